@@ -189,6 +189,8 @@ const Kernels& avx2_kernels();
 const Kernels& avx512_kernels();
 #endif
 
+// MechanismCheck::kLargestVariable, whose header the kernels do not include: what is inline there
+// would be compiled for their instruction sets. mechanism_check.cpp has them equal.
 inline constexpr double kLargestKernelVariable = 100.0;
 // Of a sine and its cosine together, see kernel_frames.h.
 inline constexpr double kSineError = 2e-11;

@@ -27,6 +27,7 @@
 #include "collide/contact.h"
 #include "collide/edge.h"
 #include "collide/instruction_set.h"
+#include "robot/model/kinematics.h"
 #include "robot/model/robot_model.h"
 
 #include <Eigen/Core>
@@ -102,8 +103,8 @@ struct ClearanceRequest {
 struct RobotClearance {
   // No two of the spheres and solids that are tested against each other come nearer than this to
   // touching, in exact arithmetic; 0 where they touch or nearly, and where a joint's position is
-  // beyond 100 in magnitude, for which no error is known. Metres. Infinite if nothing is tested, or
-  // all of it is passed over: then no distance is known.
+  // beyond kLargestJointPosition in magnitude, for which no error is known. Metres. Infinite if
+  // nothing is tested, or all of it is passed over: then no distance is known.
   double lower = std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();  // the nearest two are not further apart
   CheckedBody first;  // the pair that attains `upper`, empty names if nothing is tested
@@ -158,7 +159,7 @@ class RobotChecker {
   // Configurations with a joint's position beyond this in magnitude (radians or metres) are
   // answered as exactly, but slowly; where one leads out of all bounds, forward_kinematics()
   // throws. Motions do not start or end there.
-  static constexpr double kLargestPosition = 100.0;
+  static constexpr double kLargestPosition = kLargestJointPosition;
 
   // True if the configuration is free: of obstacles and of itself, and within the limits if these
   // are enforced.

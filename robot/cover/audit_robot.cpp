@@ -23,8 +23,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kSharePoints = 20000;
-// Up to which positions kinematics_error_bound() holds.
-constexpr double kLargestPosition = 100.0;
 // Chord error of the meshes around curved primitives.
 constexpr double kChordError = LinkMeshOptions{}.chord_error;
 
@@ -272,7 +270,7 @@ void check_configurations(const RobotDescription& robot,
   for (const std::vector<double>& configuration : configurations) {
     forward_kinematics(robot.model, configuration, world_from_link);
     for (const Joint& joint : robot.model.joints()) {
-      if (!(std::abs(joint.position(configuration)) <= kLargestPosition)) {
+      if (!(std::abs(joint.position(configuration)) <= kLargestJointPosition)) {
         throw Error("configuration", "the position of joint " + joint.name + " is beyond 100");
       }
     }

@@ -101,7 +101,7 @@ double kinematics_error_bound(const RobotModel& robot, double reach, double root
     Chain chain = chains[static_cast<std::size_t>(joint.parent_link)];
     chain.joints += 1.0;
     chain.length += joint.parent_from_joint.translation().norm();
-    if (joint.type == JointType::kPrismatic) chain.length += internal::kLargestPosition;
+    if (joint.type == JointType::kPrismatic) chain.length += kLargestJointPosition;
     (joint.turns() ? chain.turned : chain.shifted) += internal::mimic_error(joint);
     bound = std::max(bound, chain_bound(chain.joints, chain.length, reach, root_distance) +
                                 chain.turned * (reach + chain.length) + chain.shifted);

@@ -17,12 +17,17 @@
 // assert(spherule::kinematics_error_bound(robot, 1.0) < 1e-12);
 // @endcode
 
+#include "collide/mechanism_check.h"
 #include "robot/model/robot_model.h"
 
 #include <span>
 #include <vector>
 
 namespace spherule {
+
+// The largest magnitude of a joint's position, in radians or metres, for which bounds of errors are
+// proved.
+inline constexpr double kLargestJointPosition = MechanismCheck::kLargestVariable;
 
 // Poses world_from_link of all links, in the order of RobotModel::links(), for a configuration of
 // variable_count() positions (radians or metres; limits are not enforced) and a placed root.
@@ -36,9 +41,9 @@ void forward_kinematics(const RobotModel& robot, std::span<const double> configu
 
 // Bound on the distance between a point at distance at most `reach` from a link's frame mapped by
 // the computed pose and by the exact mechanism (the joints exactly as the model stores them), in
-// metres, for any configuration with joint positions of at most 100 in magnitude and a root at
-// distance at most `root_distance` from the world's origin. The error budget stands in
-// kinematics.cpp.
+// metres, for any configuration with joint positions of at most kLargestJointPosition in
+// magnitude and a root at distance at most `root_distance` from the world's origin. The error
+// budget stands in kinematics.cpp.
 double kinematics_error_bound(const RobotModel& robot, double reach, double root_distance = 0.0);
 
 }  // namespace spherule

@@ -16,6 +16,8 @@
 // assert(boxes.contains_edge(std::vector{-0.9}, std::vector{-0.1}) && boxes.free_share() == 0.5);
 // @endcode
 
+#include "robot/model/kinematics.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -39,14 +41,14 @@ namespace spherule {
 // object, nothing is proved.
 class FreeBoxes {
  public:
-  // With |position| <= 100 at both ends of an edge and u = 2^-53, a point (1 - t) a + t b as
-  // computed errs by 3 u 200, the place where an edge crosses a plane by 8 u 400, and taking up to
-  // 16 turns off by 3e-14: together less than kTolerance, and with that, and with what the end of a
-  // motion by the shorter way is off (kTurnError), less than kMargin.
+  // With |position| <= kLargestPosition = 100 at both ends of an edge and u = 2^-53, a point (1 -
+  // t) a + t b as computed errs by 3 u 200, the place where an edge crosses a plane by 8 u 400, and
+  // taking up to 16 turns off by 3e-14: together less than kTolerance, and with that, and with what
+  // the end of a motion by the shorter way is off (kTurnError), less than kMargin.
   static constexpr double kMargin = 1e-12;
   static constexpr double kTolerance = 4.7e-13;
   static constexpr std::size_t kMostVariables = 16;
-  static constexpr double kLargestPosition = 100.0;
+  static constexpr double kLargestPosition = kLargestJointPosition;
 
   // A variable of the robot, by its index in a configuration, and the proved range of its values,
   // in radians or metres. Values of one that wraps are taken modulo one turn; its range is then

@@ -16,8 +16,6 @@
 namespace spherule {
 namespace {
 
-constexpr double kLargestPosition = 100.0;
-
 double random_size_of_scene(SceneRandom& random) {
   return random.chance(0.6) ? 1.0 : random.magnitude(1e-3, 1e3);
 }
@@ -91,8 +89,8 @@ RobotModel CheckerScene::make_robot(SceneRandom& random) {
     joint.axis = random.direction();
     joint.parent_from_joint =
         random.chance(0.1) ? Pose() : Pose(random.rotation(), random.in_cube(0.5 * size_));
-    joint.lower = -kLargestPosition;
-    joint.upper = kLargestPosition;
+    joint.lower = -kLargestJointPosition;
+    joint.upper = kLargestJointPosition;
     if (joint.type != JointType::kFixed) moving.push_back(joint.name);
     const int parent = is_chain ? i - 1 : random.whole(0, i - 1);
     const std::string link = numbered("link_", static_cast<std::size_t>(i));
@@ -283,7 +281,8 @@ std::vector<double> CheckerScene::anywhere(SceneRandom& random) const {
   const double far = random.chance(0.05) ? 95.0 : std::numbers::pi;
   for (const int j : robot().variable_joints()) {
     const bool turns = robot().joints()[static_cast<std::size_t>(j)].turns();
-    const double reach = turns ? far : std::min(kLargestPosition, random.between(0.2, 2.0) * size_);
+    const double reach =
+        turns ? far : std::min(kLargestJointPosition, random.between(0.2, 2.0) * size_);
     configuration.push_back(random.between(-reach, reach));
   }
   for (int i = 0; i < 60 && !in_filter_range(configuration); ++i) {
@@ -294,7 +293,7 @@ std::vector<double> CheckerScene::anywhere(SceneRandom& random) const {
 
 bool CheckerScene::in_filter_range(std::span<const double> configuration) const {
   return std::all_of(robot().joints().begin(), robot().joints().end(), [&](const Joint& joint) {
-    return std::abs(joint.position(configuration)) <= kLargestPosition;
+    return std::abs(joint.position(configuration)) <= kLargestJointPosition;
   });
 }
 

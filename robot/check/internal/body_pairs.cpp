@@ -3,7 +3,6 @@
 
 #include "collide/collide.h"
 #include "collide/kernels/check_plan_source.h"
-#include "collide/mechanism_check.h"
 #include "collide/solid_fields.h"
 #include "collide/solid_mesh.h"
 #include "collide/solid_within.h"
@@ -174,14 +173,14 @@ bool BodyPairs::in_filter_range(std::span<const double> configuration) const {
   if (!robot_.has_mimics()) {
     bool in_filter_range = true;
     for (const double position : configuration) {
-      in_filter_range &= std::abs(position) <= MechanismCheck::kLargestVariable;
+      in_filter_range &= std::abs(position) <= kLargestJointPosition;
     }
     return in_filter_range;
   }
   return std::all_of(robot_.joints().begin(), robot_.joints().end(), [&](const Joint& joint) {
     if (!joint.moves()) return true;
     const double variable = configuration[static_cast<std::size_t>(joint.variable)];
-    return std::abs(joint.multiplier * variable + joint.offset) <= MechanismCheck::kLargestVariable;
+    return std::abs(joint.multiplier * variable + joint.offset) <= kLargestJointPosition;
   });
 }
 

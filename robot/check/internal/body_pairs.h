@@ -99,7 +99,7 @@ class BodyPairs {
   bool is_confirmed(const CheckedPair& pair) const;
 
   // Whether the bounds of errors hold: every number is finite, and no joint's position is beyond
-  // MechanismCheck::kLargestVariable. For a configuration of the right size.
+  // kLargestJointPosition. For a configuration of the right size.
   bool in_filter_range(std::span<const double> configuration) const;
 
   // Takes a configuration; the functions below answer for it. Throws Error as forward_kinematics().

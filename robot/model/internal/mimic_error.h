@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/mechanism_check.h"
+#include "robot/model/kinematics.h"
 #include "robot/model/robot_model.h"
 #include "robot/model/shortest_motion.h"
 #include "spheretree/rounding.h"
@@ -11,16 +11,14 @@
 
 namespace spherule::internal {
 
-// Positions that bounds of errors hold for: the larger ones are for no fast check.
-inline constexpr double kLargestPosition = MechanismCheck::kLargestVariable;
-
-// How far the computed position p of a joint is from the exact one, for |p| <= kLargestPosition =
-// P; zero unless the joint mimics another. With m the multiplier, o the offset, q the variable and
-// u = 2^-53, the product errs by u |m q| and the sum by u |p|, and |m q| <= P + |o| up to terms of
-// second order, so that the sum is at most u (2 P + |o|); the factor covers those terms.
+// How far the computed position p of a joint is from the exact one, for |p| <=
+// kLargestJointPosition = P; zero unless the joint mimics another. With m the multiplier, o the
+// offset, q the variable and u = 2^-53, the product errs by u |m q| and the sum by u |p|, and |m q|
+// <= P + |o| up to terms of second order, so that the sum is at most u (2 P + |o|); the factor
+// covers those terms.
 inline double mimic_error(const Joint& joint) {
   if (joint.mimics < 0) return 0.0;
-  return 1.001 * kUnitRoundoff * (2.0 * kLargestPosition + std::abs(joint.offset));
+  return 1.001 * kUnitRoundoff * (2.0 * kLargestJointPosition + std::abs(joint.offset));
 }
 
 // How far apart two of these can be anywhere on a motion that is straight in the variables, with

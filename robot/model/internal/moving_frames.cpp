@@ -61,7 +61,7 @@ double moving_pose_error(const RobotModel& robot, double reach, double scene,
   double shifted = 0.0;
   for (const Joint& joint : robot.joints()) {
     length += joint.parent_from_joint.translation().norm() +
-              (joint.type == JointType::kPrismatic ? kLargestPosition : 0.0);
+              (joint.type == JointType::kPrismatic ? kLargestJointPosition : 0.0);
     (joint.turns() ? turned : shifted) += mimic_error_on_edges(joint) + turn_error(robot, joint);
   }
   const double all = std::max(reach + length, scene) + root_distance;
