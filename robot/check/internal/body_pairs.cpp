@@ -129,8 +129,9 @@ BodyPairs::BodyPairs(RobotModel robot, const Pose& world_from_root,
   }
   const double reach = largest_reach(robot_, pieces_);
   const double root = world_from_root_.translation().norm();
-  pose_error_ = moving_pose_error(robot_, reach, scene, root);
-  size_ = pose_error_ / (360.0 * kUnitRoundoff);
+  const MovingPoseError of_poses = moving_pose_error(robot_, reach, scene, root);
+  pose_error_ = of_poses.error;
+  size_ = of_poses.size;
   double factors = 0.0;
   for (const Joint& joint : robot_.joints()) {
     if (joint.moves()) factors += std::abs(joint.multiplier);

@@ -54,8 +54,9 @@ MovingFrames::MovingFrames(const RobotModel& robot)
 // than 40 u; and the slack of the canonical test, 152 u of the scene. All are bounded for the whole
 // robot and scene at once. Where joints mimic others, and where turns of joints are taken off,
 // what a position may be off on a straight motion turns or shifts what lies beyond.
-double moving_pose_error(const RobotModel& robot, double reach, double scene,
-                         double root_distance) {
+MovingPoseError moving_pose_error(const RobotModel& robot, double reach, double scene,
+                                  double root_distance) {
+  constexpr double kErrorOfLengths = 360.0 * kUnitRoundoff;  // for each joint, and two more
   double length = 0.0;
   double turned = 0.0;
   double shifted = 0.0;
@@ -67,8 +68,10 @@ double moving_pose_error(const RobotModel& robot, double reach, double scene,
   const double all = std::max(reach + length, scene) + root_distance;
   if (!(all <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
   const double joints = static_cast<double>(robot.joints().size());
-  return kinematics_error_bound(robot, reach, root_distance) +
-         360.0 * kUnitRoundoff * (joints + 2.0) * all + turned * (reach + length) + shifted;
+  const double error = kinematics_error_bound(robot, reach, root_distance) +
+                       kErrorOfLengths * (joints + 2.0) * all + turned * (reach + length) + shifted;
+  // `size` is at least (joints + 2) times `all`.
+  return {error, error / kErrorOfLengths};
 }
 
 }  // namespace spherule::internal

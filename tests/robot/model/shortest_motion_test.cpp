@@ -132,7 +132,8 @@ TEST(ShortestMotion, RoundingOfTurnsIsCharged) {
   constexpr double kReach = 5.0;
   const auto error_with = [](double multiplier) {
     return internal::moving_pose_error(with_follower(JointType::kContinuous, multiplier), kReach,
-                                       0.0, 0.0);
+                                       0.0, 0.0)
+        .error;
   };
   EXPECT_GE(error_with(30.0) - error_with(30.5), 0.99 * 30.0 * kTurnError * kReach);
   EXPECT_GE(error_with(-3.0) - error_with(-2.0), 0.99 * kTurnError * kReach);
