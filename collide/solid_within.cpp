@@ -29,10 +29,6 @@ using internal::Triangle;
 // An image errs by less than 136 u S (search/relative_pose.h).
 constexpr double kImageError = 136.0 * kUnitRoundoff;
 
-double sum_up(double a, double b) {
-  return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
-}
-
 // Leaf test of two triangles: not proved to be farther apart than the clearance. An axis that
 // triangle_contact() finds to separate them by more than its pad separates the exact triangles by
 // what the pad has above the 76 u S that are required of it: the clearance, and 32 u of it, of

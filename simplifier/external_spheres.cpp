@@ -68,11 +68,6 @@ void check_options(const ExternalOptions& options) {
 // Of the coordinates of the box: how far a sphere that is left out may reach into it.
 constexpr double kBoxRounding = 1e-12;
 
-// Exact where one of the two is zero: users see the sum.
-double sum_up(double a, double b) {
-  return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
-}
-
 Eigen::AlignedBox3d inflated_outwards(const Eigen::AlignedBox3d& box, double by) {
   Eigen::AlignedBox3d inflated;
   for (int axis = 0; axis < 3; ++axis) {

@@ -21,6 +21,10 @@ double add_up(double a, double b) {
   return spherule::add_up(a, b);
 }
 
+double sum_up(double a, double b) {
+  return spherule::sum_up(a, b);
+}
+
 double add_down(double a, double b) {
   return spherule::add_down(a, b);
 }

@@ -73,6 +73,7 @@ inline namespace ieee {
 double next_up(double x);
 double next_down(double x);
 double add_up(double a, double b);
+double sum_up(double a, double b);
 double add_down(double a, double b);
 double sub_up(double a, double b);
 double sub_down(double a, double b);
@@ -98,6 +99,10 @@ inline double next_down(double x) {
 // One operation, rounded so that the result is not below (up) or above (down) the exact value.
 inline double add_up(double a, double b) {
   return next_up(a + b);
+}
+// add_up() that is exact where one of the two is zero: for lengths that users see, as a padding.
+inline double sum_up(double a, double b) {
+  return a == 0.0 || b == 0.0 ? a + b : add_up(a, b);
 }
 inline double add_down(double a, double b) {
   return next_down(a + b);

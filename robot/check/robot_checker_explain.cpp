@@ -36,7 +36,7 @@ double RobotChecker::padding_of(std::size_t index) const {
   const auto& pieces = parts_->pairs.pieces();
   const double first = pieces[static_cast<std::size_t>(pair.piece)].padding;
   if (pair.is_obstacle) return first;
-  return internal::padding_sum(first, pieces[static_cast<std::size_t>(pair.other)].padding);
+  return sum_up(first, pieces[static_cast<std::size_t>(pair.other)].padding);
 }
 
 std::vector<CheckedContact> RobotChecker::explain(std::span<const double> configuration,

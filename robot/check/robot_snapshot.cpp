@@ -169,9 +169,9 @@ class RobotScene::Snapshot {
     const std::string& other = obstacle_names_[obstacle].name;
     const std::optional<Regions> left_out = regions_left_out(name, other);
     if (!left_out) return;
-    for (const int piece : pieces_of(
-             body, *left_out,
-             internal::padding_sum(scene_.padding_of(name), scene_.padding_between(name, other)))) {
+    for (const int piece :
+         pieces_of(body, *left_out,
+                   sum_up(scene_.padding_of(name), scene_.padding_between(name, other)))) {
       const bool is_static = std::holds_alternative<Tree>(shapes_[obstacle].shape);
       require(++with_obstacles_ <= kMostObstaclePairs, "of bodies and obstacles");
       (is_static ? static_pairs_ : pairs_).push_back({piece, static_cast<int>(obstacle), true});
@@ -188,7 +188,7 @@ class RobotScene::Snapshot {
     const double between = scene_.padding_between(first.name, second.name);
     const std::shared_ptr<const FreeBoxes> boxes = boxes_of(first, second);
     const std::vector<int> seconds = pieces_of(other, *of_second, scene_.padding_of(second.name));
-    const double padding = internal::padding_sum(scene_.padding_of(first.name), between);
+    const double padding = sum_up(scene_.padding_of(first.name), between);
     for (const int a : pieces_of(body, *of_first, padding)) {
       for (const int b : seconds) {
         require(++of_bodies_ <= kMostBodyPairs, "of bodies");

@@ -51,10 +51,6 @@ TriangleMesh tetrahedron(SceneRandom& random, double size) {
   return mesh;
 }
 
-double padding_sum(double first, double second) {
-  return first == 0.0 || second == 0.0 ? first + second : add_up(first, second);
-}
-
 std::string numbered(const char* name, std::size_t i) {
   return name + std::to_string(i);
 }
@@ -253,7 +249,7 @@ void CheckerScene::make_pairs(SceneRandom& random) {
       double between = 0.0;
       bool region = false;
       if (!settle(obstacles_[i].name, between, region)) continue;
-      for (const Tree& tree : inflated(body, padding_sum(body.padding, between), region)) {
+      for (const Tree& tree : inflated(body, sum_up(body.padding, between), region)) {
         pairs_.push_back({tree, body.link, nullptr, 0, i});
       }
     }
@@ -267,7 +263,7 @@ void CheckerScene::make_pairs(SceneRandom& random) {
                                  : is_moved(body.link, other.link);
       if (!is_tested) continue;
       const std::vector<Tree> others = inflated(other, other.padding, false);
-      for (const Tree& tree : inflated(body, padding_sum(body.padding, between), region)) {
+      for (const Tree& tree : inflated(body, sum_up(body.padding, between), region)) {
         for (const Tree& second : others) {
           pairs_.push_back({tree, body.link, second, other.link, none});
         }

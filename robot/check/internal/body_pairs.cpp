@@ -287,8 +287,8 @@ bool BodyPairs::meshes_within(const CheckedPair& pair, double clearance,
   const Pose& pose_a = pose_of(a, memory);
   const Pose& pose_b = b != nullptr ? pose_of(*b, memory) : obstacles_[other].world_from_shape;
   double reach = clearance;
-  if (a.mesh != nullptr) reach = padding_sum(reach, a.padding);
-  if (b != nullptr && mesh_b != nullptr) reach = padding_sum(reach, b->padding);
+  if (a.mesh != nullptr) reach = sum_up(reach, a.padding);
+  if (b != nullptr && mesh_b != nullptr) reach = sum_up(reach, b->padding);
   if (!(reach <= kMaxCoordinate)) return true;  // the queries refuse it
   if (a.mesh == nullptr) return within(*a.tree, pose_a, mesh_b->solid(), pose_b, reach);
   if (mesh_b != nullptr) {

@@ -16,7 +16,6 @@
 #include "robot/model/internal/path_reach.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/free_boxes.h"
-#include "spheretree/rounding.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,11 +25,6 @@
 #include <vector>
 
 namespace spherule::internal {
-
-// Of both together; no less than that.
-inline double padding_sum(double first, double second) {
-  return first == 0.0 || second == 0.0 ? first + second : add_up(first, second);
-}
 
 // Spheres on a link that are tested as one: a tree of a link or an attached object, or some of its
 // spheres, grown by the padding that is requested.
