@@ -33,6 +33,12 @@ bool is_too_small(std::string_view text) {
   return value ? *value < needed : exponent.starts_with('-');
 }
 
+int digit_of_hex(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
 }  // namespace
 
 std::optional<double> finite_number(std::string_view text) {
@@ -81,6 +87,14 @@ std::size_t count_line_ends(std::string_view text) {
     if (text[i] == '\n' || (text[i] == '\r' && !is_first_of_two)) ++count;
   }
   return count;
+}
+
+std::optional<char> percent_escape(std::string_view text) {
+  if (text.size() < 3 || text[0] != '%') return std::nullopt;
+  const int high = digit_of_hex(text[1]);
+  const int low = digit_of_hex(text[2]);
+  if (high < 0 || low < 0 || (high == 0 && low == 0)) return std::nullopt;
+  return static_cast<char>(16 * high + low);
 }
 
 std::string in_quotes(std::string_view text) {

@@ -12,6 +12,7 @@
 // assert(!spherule::internal::finite_number("1.5 mm"));
 // assert(spherule::internal::number_text(0.1) == "0.1");
 // assert(spherule::internal::words_of("v 0.5  1 2").size() == 4);
+// assert(spherule::internal::percent_escape("%20.stl") == ' ');
 // std::string_view text = "one\r\ntwo\rthree\n";
 // assert(spherule::internal::count_line_ends(text) == 3);
 // assert(spherule::internal::take_line(text) == "one" && text == "two\rthree\n");
@@ -47,6 +48,10 @@ std::string_view take_line(std::string_view& text);
 
 // How many such ends of lines a text has.
 std::size_t count_line_ends(std::string_view text);
+
+// The character that the first three of a text stand for in a URL (%20), where that is one and not
+// the end of a string.
+std::optional<char> percent_escape(std::string_view text);
 
 // A text in quotes for a message; of a long one the first 60 characters.
 std::string in_quotes(std::string_view text);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/uri.h"
 
+#include "spheretree/text.h"
+
 #include <array>
 #include <cstdint>
 #include <system_error>
@@ -13,12 +15,6 @@ int digit_of_base64(char c) {
   if (c >= 'a' && c <= 'z') return c - 'a' + 26;
   if (c >= '0' && c <= '9') return c - '0' + 52;
   return c == '+' ? 62 : c == '/' ? 63 : -1;
-}
-
-int digit_of_hex(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
 std::optional<std::string> from_base64(std::string_view text) {
@@ -54,10 +50,9 @@ std::optional<std::string> without_percents(std::string_view text) {
       result.push_back(text[i]);
       continue;
     }
-    if (i + 2 >= text.size()) return std::nullopt;
-    const int high = digit_of_hex(text[i + 1]), low = digit_of_hex(text[i + 2]);
-    if (high < 0 || low < 0 || (high == 0 && low == 0)) return std::nullopt;
-    result.push_back(static_cast<char>(16 * high + low));
+    const std::optional<char> character = percent_escape(text.substr(i));
+    if (!character) return std::nullopt;
+    result.push_back(*character);
     i += 2;
   }
   return result;

@@ -4,9 +4,11 @@
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
+#include "spheretree/text.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -33,26 +35,13 @@ std::string package_name(const fs::path& folder) {
   }
 }
 
-int hexadecimal_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-// With the characters that a URL writes as %20 and the like. None is the end of a path.
+// With the characters that a URL writes as %20 and the like; what is no escape stays.
 std::string unescaped(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_escape = text[i] == '%' && i + 2 < text.size();
-    const int high = is_escape ? hexadecimal_digit(text[i + 1]) : -1;
-    const int low = is_escape ? hexadecimal_digit(text[i + 2]) : -1;
-    if (high < 0 || low < 0 || high + low == 0) {
-      result += text[i];
-    } else {
-      result += static_cast<char>(16 * high + low);
-      i += 2;
-    }
+    const std::optional<char> character = percent_escape(text.substr(i));
+    result += character.value_or(text[i]);
+    if (character) i += 2;
   }
   return result;
 }
