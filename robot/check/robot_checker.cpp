@@ -118,16 +118,13 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
   };
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->standing) {
-    parts_->standing->touch(configurations, *memory.standing, free);
-    if (parts_->pairs.static_tree_pairs_begin() == 0 && !parts_->enforces_limits) {
-      for (std::uint8_t& answer : free) answer ^= 1U;
-      return;
-    }
+    parts_->standing->find_free(configurations, *memory.standing, free);
+    if (parts_->pairs.static_tree_pairs_begin() == 0 && !parts_->enforces_limits) return;
   } else {
     if (parts_->requires_finite()) require_finite(configurations);
-    std::fill(free.begin(), free.end(), std::uint8_t{0});
+    std::fill(free.begin(), free.end(), std::uint8_t{1});
   }
-  // Those that are left wait until the lanes are full.
+  // Those that are free so far wait until the lanes are full.
   constexpr std::size_t kLanes = internal::LaneCheck::kLanes;
   std::array<std::span<const double>, kLanes> waiting;
   std::array<std::size_t, kLanes> index{};
@@ -142,11 +139,12 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
     count = 0;
   };
   for (std::size_t i = 0; i < free.size(); ++i) {
-    const bool collides = free[i] != 0;
-    free[i] = 0;
-    if (collides) continue;
-    if (parts_->enforces_limits && joint_outside_limits(parts_->robot, configuration(i)) != nullptr)
+    if (free[i] == 0) continue;
+    if (parts_->enforces_limits &&
+        joint_outside_limits(parts_->robot, configuration(i)) != nullptr) {
+      free[i] = 0;
       continue;
+    }
     if (!parts_->pairs.in_filter_range(configuration(i))) {
       free[i] = is_free_of_itself(configuration(i), scratch) ? 1 : 0;
       continue;

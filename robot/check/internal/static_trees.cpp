@@ -70,15 +70,15 @@ bool StaticTrees::touch(std::span<const double> configuration, Memory& memory) c
   return check_->collides(positions, memory.check_, confirm) || contains_component(memory);
 }
 
-void StaticTrees::touch(std::span<const double> configurations, Memory& memory,
-                        std::span<std::uint8_t> verdicts) const {
+void StaticTrees::find_free(std::span<const double> configurations, Memory& memory,
+                            std::span<std::uint8_t> free) const {
   constexpr std::size_t kBlock = MechanismCheck::kBlock;
   const auto variables = static_cast<std::size_t>(pairs_.robot().variable_count());
   const auto configuration = [&](std::size_t i) {
     return configurations.subspan(i * variables, variables);
   };
-  for (std::size_t first = 0; first < verdicts.size(); first += kBlock) {
-    const std::size_t last = std::min(first + kBlock, verdicts.size()) - 1;
+  for (std::size_t first = 0; first < free.size(); first += kBlock) {
+    const std::size_t last = std::min(first + kBlock, free.size()) - 1;
     std::array<const double*, kBlock> block;  // filled up with the last one
     for (std::size_t i = 0; i < kBlock; ++i) {
       const std::size_t index = std::min(first + i, last);
@@ -103,7 +103,7 @@ void StaticTrees::touch(std::span<const double> configurations, Memory& memory,
       } else if (!hit && says(unconfirmed)) {
         hit = touch(configuration(i), memory);
       }
-      verdicts[i] = hit ? 1 : 0;
+      free[i] = hit ? 0 : 1;
     }
   }
 }

@@ -58,10 +58,10 @@ class StaticTrees {
   // robot has variables; throws Error if one is not finite, and where forward_kinematics() does.
   bool touch(std::span<const double> configuration, Memory& memory) const;
 
-  // The same of many, which lie one behind the other; verdicts[i] is 1 if the i-th touches,
+  // The same of many, which lie one behind the other: free[i] is 1 if the i-th touches nothing,
   // otherwise 0. Several times faster where neighbours differ little.
-  void touch(std::span<const double> configurations, Memory& memory,
-             std::span<std::uint8_t> verdicts) const;
+  void find_free(std::span<const double> configurations, Memory& memory,
+                 std::span<std::uint8_t> free) const;
 
   // Of a straight motion from one configuration to another: whether it is free, as RobotChecker
   // says of check_edge(), or (if that is requested) touches in its middle. Fast for the motions of
