@@ -70,6 +70,12 @@ struct MechanismContact {
   std::int32_t obstacle_sphere = 0;
 };
 
+// How a MechanismCheck answers.
+struct MechanismCheckOptions {
+  InstructionSet instructions = best_instruction_set();
+  bool always_exact = false;  // no contact counts as sure: each is left to `confirm`
+};
+
 // Bodies of a jointed mechanism against obstacles that stand still, in single precision: a fast
 // test before an exact one. For each configuration it finds either that no two spheres of a pair
 // touch, or that some do, for sure; where rounding leaves that uncertain it calls `confirm`.
@@ -84,12 +90,10 @@ class MechanismCheck {
   // Pairs are tested in their order, as far as bodies are not searched together. Throws Error for
   // indices out of range, a missing tree, a mechanism or obstacle that reaches beyond
   // kMaxCoordinate (joined with those that it is searched with, too), a pose_error that is no
-  // length, or instructions that this machine has not got. With `always_exact` no contact counts as
-  // sure.
+  // length, or instructions that this machine has not got.
   MechanismCheck(std::span<const MechanismFrame> frames, std::span<const MechanismBody> bodies,
                  std::span<const MechanismObstacle> obstacles, std::span<const MechanismPair> pairs,
-                 double pose_error, InstructionSet instructions = best_instruction_set(),
-                 bool always_exact = false);
+                 double pose_error, const MechanismCheckOptions& options = {});
   ~MechanismCheck();
   // Copies share what is held, and so do one and what was moved from it.
   MechanismCheck(const MechanismCheck&) noexcept;

@@ -116,9 +116,9 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
                                std::span<const MechanismBody> bodies,
                                std::span<const MechanismObstacle> obstacles,
                                std::span<const MechanismPair> pairs, double pose_error,
-                               InstructionSet instructions, bool always_exact) {
+                               const MechanismCheckOptions& options) {
   check_input(frames, bodies, obstacles, pairs, pose_error);
-  const internal::Kernels& kernels = internal::kernels_for(instructions);
+  const internal::Kernels& kernels = internal::kernels_for(options.instructions);
   auto parts = std::make_unique<Parts>(internal::JoinedScene(bodies, obstacles, pairs));
   const internal::JoinedScene& scene = parts->scene;
   for (const MechanismFrame& frame : frames) {
@@ -158,7 +158,7 @@ MechanismCheck::MechanismCheck(std::span<const MechanismFrame> frames,
         body_trees[i], (kPerLength + parts->tilt[i]) * reach[i] + kPerScene * bound + pose_error);
     body_depth = std::max(body_depth, tree.depth());
     parts->bodies.push_back(kernel_body(tree, frame, reach[i], links));
-    if (always_exact) parts->bodies.back().margin = std::numeric_limits<float>::infinity();
+    if (options.always_exact) parts->bodies.back().margin = std::numeric_limits<float>::infinity();
   }
   for (const SphereTree& obstacle : obstacle_trees) {
     const PackedTree& tree = parts->trees.emplace_back(obstacle, kPerScene * bound);

@@ -64,8 +64,7 @@ class DeepContact {
                         std::vector<MechanismObstacle>{{Pose(), one_sphere_tree({1, 0, 0}, 0.5)}},
                         kOnePair,
                         0.0,
-                        best_instruction_set(),
-                        true};
+                        {.always_exact = true}};
   MechanismCheck::Scratch scratch_{check_};
 };
 
@@ -140,7 +139,8 @@ struct Arm {
     for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
       pairs.push_back({static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size())});
     }
-    return MechanismCheck(frames, bodies, things, pairs, 0.0, set, true);
+    return MechanismCheck(frames, bodies, things, pairs, 0.0,
+                          {.instructions = set, .always_exact = true});
   }
 };
 

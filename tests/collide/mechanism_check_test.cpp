@@ -30,7 +30,7 @@ Finding find(double angle, double gap, InstructionSet set) {
   const std::vector<MechanismObstacle> obstacles = {
       {Pose(), one_sphere_tree({way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1)}};
   const std::vector<MechanismPair> pairs(1);
-  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, set);
+  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, {.instructions = set});
   MechanismCheck::Scratch scratch(check);
   bool queried = false;
   const auto confirm = [&](const MechanismContact& contact) {
@@ -109,7 +109,7 @@ TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
         {Pose(), one_sphere_tree(pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1)}};
     const std::vector<MechanismPair> pairs(1);
     for (const InstructionSet set : instruction_sets()) {
-      const MechanismCheck check(frames, bodies, obstacles, pairs, 0.0, set);
+      const MechanismCheck check(frames, bodies, obstacles, pairs, 0.0, {.instructions = set});
       MechanismCheck::Scratch scratch(check);
       std::array<const double*, MechanismCheck::kBlock> block;
       block.fill(variables.data());

@@ -130,7 +130,13 @@ struct ConfigurationClient {
   }
   // For one evaluation.
   PlanClient client(bool skips_never) {
-    return {&touches, nullptr, &is_proved_free, nullptr, nullptr, this, skips_never};
+    return {.touches = &touches,
+            .near = nullptr,
+            .is_proved_free = &is_proved_free,
+            .is_motion_proved = nullptr,
+            .proved_parts = nullptr,
+            .context = this,
+            .skips_never = skips_never};
   }
 };
 

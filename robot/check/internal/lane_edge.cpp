@@ -217,10 +217,14 @@ class LaneCheck::Edge {
     }
     place({parts.data(), count}, batch);
     Client<Real> client{*this};
-    kernel<Real>()(
-        plan, stage.plan.view(), batch,
-        {&Client<Real>::touches, &Client<Real>::near, &Client<Real>::is_proved_free,
-         &Client<Real>::is_motion_proved, &Client<Real>::proved_parts, &client, skips_never_});
+    kernel<Real>()(plan, stage.plan.view(), batch,
+                   {.touches = &Client<Real>::touches,
+                    .near = &Client<Real>::near,
+                    .is_proved_free = &Client<Real>::is_proved_free,
+                    .is_motion_proved = &Client<Real>::is_motion_proved,
+                    .proved_parts = &Client<Real>::proved_parts,
+                    .context = &client,
+                    .skips_never = skips_never_});
     if (batch.contacts != 0) {
       for (std::size_t i = 0; i < count; ++i) {
         if ((batch.contacts >> i & 1U) != 0) {

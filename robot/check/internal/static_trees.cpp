@@ -54,8 +54,9 @@ StaticTrees::StaticTrees(const BodyPairs& pairs, InstructionSet instructions)
   }
   pair_of_.resize(bodies_.size() * obstacles_.size());
   for (std::size_t i = 0; i < tested.size(); ++i) pair_of_[place_of(tested[i])] = indices[i];
-  check_ = std::make_unique<const MechanismCheck>(frames.frames, bodies, obstacles, tested,
-                                                  pairs.pose_error(), instructions, has_meshes);
+  check_ = std::make_unique<const MechanismCheck>(
+      frames.frames, bodies, obstacles, tested, pairs.pose_error(),
+      MechanismCheckOptions{.instructions = instructions, .always_exact = has_meshes});
 }
 
 bool StaticTrees::touch(std::span<const double> configuration, Memory& memory) const {
