@@ -80,31 +80,31 @@ class RobotStates {
   const RobotChecker& checker() const { return checker_; }
 
   // What one query writes to.
-  struct Memory {
+  struct Scratch {
     // For this checker and its copies.
-    explicit Memory(const RobotChecker& checker) : scratch(checker) {}
+    explicit Scratch(const RobotChecker& robot_checker) : checker(robot_checker) {}
 
-    RobotChecker::Scratch scratch;
+    RobotChecker::Scratch checker;
     std::vector<double> from;
     std::vector<double> to;
   };
 
-  // Gives the memory back when it ends. The last one given back is the first to be lent again, so
-  // that a lone thread keeps what its scratch remembers.
+  // Gives the scratch back when it ends. The last one given back is the first to be lent again, so
+  // that a lone thread keeps what that remembers.
   class Loan {
    public:
-    // Takes memory that is free, or makes some, and gives it back at the end.
-    explicit Loan(const RobotStates& lender) : lender_(lender), memory_(lender.take()) {}
-    ~Loan() { lender_.give_back(std::move(memory_)); }
+    // Takes one that is free, or makes one, and gives it back at the end.
+    explicit Loan(const RobotStates& lender) : lender_(lender), scratch_(lender.take()) {}
+    ~Loan() { lender_.give_back(std::move(scratch_)); }
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
 
-    // The memory lent.
-    Memory& operator*() const { return *memory_; }
+    // The scratch lent.
+    Scratch& operator*() const { return *scratch_; }
 
    private:
     const RobotStates& lender_;
-    std::unique_ptr<Memory> memory_;
+    std::unique_ptr<Scratch> scratch_;
   };
 
   // The configuration of a state, in the order of the robot's variables.
@@ -162,28 +162,28 @@ class RobotStates {
     }
   }
 
-  std::unique_ptr<Memory> take() const {
+  std::unique_ptr<Scratch> take() const {
     {
       const std::lock_guard lock(mutex_);
       if (!idle_.empty()) {
-        std::unique_ptr<Memory> memory = std::move(idle_.back());
+        std::unique_ptr<Scratch> scratch = std::move(idle_.back());
         idle_.pop_back();
-        return memory;
+        return scratch;
       }
     }
-    return std::make_unique<Memory>(checker_);
+    return std::make_unique<Scratch>(checker_);
   }
 
-  void give_back(std::unique_ptr<Memory> memory) const {
+  void give_back(std::unique_ptr<Scratch> scratch) const {
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(memory));
+    idle_.push_back(std::move(scratch));
   }
 
   RobotChecker checker_;
   ompl::base::StateSpacePtr space_;
   std::vector<std::uint8_t> turns_;  // 1 for a number of SO2
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Memory>> idle_;
+  mutable std::vector<std::unique_ptr<Scratch>> idle_;
 };
 
 }  // namespace spherule

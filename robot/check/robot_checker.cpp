@@ -19,7 +19,7 @@ namespace {
 
 // Edges that a thread takes at a time, and configurations: whole blocks of MechanismCheck, and so
 // many that what a scratch remembers is worth something. To start and end a thread takes 40 to 75
-// us on a small cloud machine, a configuration against standing trees of an easy cell 41 ns: for
+// us on a small cloud machine, a configuration against static trees of an easy cell 41 ns: for
 // kFewestShared the second thread saves what it costs. Others take longer: more than one piece of
 // them is worth a thread.
 constexpr std::size_t kEdgesAPiece = 16;
@@ -70,7 +70,7 @@ const RobotModel& RobotChecker::robot() const {
 RobotChecker::Scratch::Scratch(const RobotChecker& checker)
     : memory_(std::make_unique<Memory>(checker.parts_, checker.parts_->lanes)) {
   require_rounding_to_nearest();
-  if (checker.parts_->standing) memory_->standing.emplace(*checker.parts_->standing);
+  if (checker.parts_->static_trees) memory_->static_trees.emplace(*checker.parts_->static_trees);
 }
 RobotChecker::Scratch::~Scratch() = default;
 RobotChecker::Scratch::Scratch(Scratch&&) noexcept = default;
@@ -92,7 +92,8 @@ bool RobotChecker::check_config(std::span<const double> configuration, Scratch& 
   if (parts_->enforces_limits && joint_outside_limits(parts_->robot, configuration) != nullptr)
     return false;
   Scratch::Memory& memory = *scratch.memory_;
-  if (parts_->standing && parts_->standing->touch(configuration, *memory.standing)) return false;
+  if (parts_->static_trees && parts_->static_trees->touch(configuration, *memory.static_trees))
+    return false;
   return is_free_of_itself(configuration, scratch);
 }
 
@@ -117,8 +118,8 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
     return configurations.subspan(i * variables, variables);
   };
   Scratch::Memory& memory = *scratch.memory_;
-  if (parts_->standing) {
-    parts_->standing->find_free(configurations, *memory.standing, free);
+  if (parts_->static_trees) {
+    parts_->static_trees->find_free(configurations, *memory.static_trees, free);
     if (parts_->pairs.static_tree_pairs_begin() == 0 && !parts_->enforces_limits) return;
   } else {
     if (parts_->requires_finite()) require_finite(configurations);
@@ -214,11 +215,11 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
                                              std::span<const double> to, double end,
                                              Scratch& scratch, const EdgeRequest& request) const {
   Scratch::Memory& memory = *scratch.memory_;
-  // Against standing trees alone, what the last motions have shown often decides the next one.
-  if (end == 1.0 && request.max_configurations > 0 && parts_->standing &&
+  // Against static trees alone, what the last motions have shown often decides the next one.
+  if (end == 1.0 && request.max_configurations > 0 && parts_->static_trees &&
       parts_->pairs.static_tree_pairs_begin() == 0) {
     using Finding = internal::StaticTrees::AlongFinding;
-    switch (parts_->standing->check_along(from, to, !request.first, *memory.standing)) {
+    switch (parts_->static_trees->check_along(from, to, !request.first, *memory.static_trees)) {
       case Finding::kFree:
         return {.verdict = Verdict::kFree, .free_until = 1.0, .configurations = 1};
       case Finding::kTouchesInTheMiddle:

@@ -49,14 +49,14 @@ std::vector<CheckedContact> RobotChecker::explain(std::span<const double> config
   };
   // Of a body with another one or an obstacle, by their indices: its place in the result.
   std::map<std::tuple<std::size_t, bool, std::size_t>, std::size_t> places;
-  internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
-  parts_->pairs.place(configuration, memory);
+  internal::BodyPairs::Scratch& canonical = scratch.memory_->pairs;
+  parts_->pairs.place(configuration, canonical);
   for (std::size_t i = 0; i < parts_->pairs.pairs().size(); ++i) {
-    const bool touches = parts_->pairs.touches(i, memory);
-    const bool is_proved_free = !touches && parts_->pairs.is_proved_free(i, memory);
+    const bool touches = parts_->pairs.touches(i, canonical);
+    const bool is_proved_free = !touches && parts_->pairs.is_proved_free(i, canonical);
     if (!touches && !(request.proved_free && is_proved_free)) continue;
     const internal::CheckedPair& pair = parts_->pairs.pairs()[i];
-    const auto contact = parts_->pairs.deepest_contact(i, memory);
+    const auto contact = parts_->pairs.deepest_contact(i, canonical);
     if (!contact) continue;
     CheckedContact found{body_of(pair.piece, contact->sphere),
                          other_of(i, contact->other_sphere),
@@ -85,11 +85,11 @@ bool RobotChecker::within(std::span<const double> configuration, double clearanc
                           Scratch& scratch) const {
   require_own(scratch);
   require_clearance(clearance);
-  internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
+  internal::BodyPairs::Scratch& canonical = scratch.memory_->pairs;
   const internal::BodyPairs& pairs = parts_->pairs;
-  pairs.place(configuration, memory);
+  pairs.place(configuration, canonical);
   for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
-    if (pairs.is_near(i, clearance, memory)) return true;
+    if (pairs.is_near(i, clearance, canonical)) return true;
   }
   return false;
 }
@@ -101,22 +101,22 @@ bool RobotChecker::within(std::span<const double> configuration, double clearanc
 RobotClearance RobotChecker::clearance(std::span<const double> configuration, Scratch& scratch,
                                        const ClearanceRequest& request) const {
   require_own(scratch);
-  internal::BodyPairs::Memory& memory = scratch.memory_->pairs;
+  internal::BodyPairs::Scratch& canonical = scratch.memory_->pairs;
   const internal::BodyPairs& pairs = parts_->pairs;
-  pairs.place(configuration, memory);
+  pairs.place(configuration, canonical);
   RobotClearance result;
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
-    if (request.skip_proved_free && pairs.is_proved_free(i, memory)) {
+    if (request.skip_proved_free && pairs.is_proved_free(i, canonical)) {
       result.skipped = true;
     } else {
-      order.emplace_back(pairs.gap_bound(i, memory), i);
+      order.emplace_back(pairs.gap_bound(i, canonical), i);
     }
   }
   std::sort(order.begin(), order.end());
   for (const auto& [bound, i] : order) {
     if (bound > result.upper) break;
-    const DistanceResult found = pairs.distance(i, memory, {.enough = result.upper});
+    const DistanceResult found = pairs.distance(i, canonical, {.enough = result.upper});
     result.lower = std::min(result.lower, found.lower);
     if (!(found.upper < result.upper)) continue;
     result.upper = found.upper;

@@ -35,16 +35,16 @@ SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollis
   }
   const std::size_t tested = pairs.size();
   const internal::BodyPairs checked(robot, Pose(), std::move(pieces), {}, std::move(pairs), tested);
-  internal::BodyPairs::Memory memory;
+  internal::BodyPairs::Scratch scratch;
   std::mt19937_64 bits(options.seed);
   std::vector<double> configuration(static_cast<std::size_t>(robot.variable_count()));
   for (std::size_t n = 0; n < options.configurations; ++n) {
     internal::draw_configuration(robot, bits, configuration);
-    checked.place(configuration, memory);
+    checked.place(configuration, scratch);
     std::size_t i = 0;
     for (std::size_t pair = 0; pair < result.pairs.size(); ++pair) {
       bool touched = false;
-      for (; i < end_of[pair]; ++i) touched = touched || checked.touches(i, memory);
+      for (; i < end_of[pair]; ++i) touched = touched || checked.touches(i, scratch);
       result.pairs[pair].touched += touched ? 1 : 0;
     }
   }

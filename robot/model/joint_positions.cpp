@@ -9,15 +9,15 @@ JointPositions::JointPositions(const RobotModel& robot) : has_mimics_(robot.has_
   }
 }
 
-JointPositions::Room JointPositions::room_for(std::size_t configurations) const {
+JointPositions::Scratch JointPositions::scratch_for(std::size_t configurations) const {
   if (!has_mimics_) return {};
   return {std::vector<double>(configurations * moving_.size())};
 }
 
-std::span<const double> JointPositions::computed(std::span<const double> configuration, Room& room,
-                                                 std::size_t place) const {
+std::span<const double> JointPositions::computed(std::span<const double> configuration,
+                                                 Scratch& scratch, std::size_t place) const {
   const std::span<double> positions =
-      std::span(room.positions).subspan(place * moving_.size(), moving_.size());
+      std::span(scratch.positions).subspan(place * moving_.size(), moving_.size());
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     positions[i] = moving_[i].position(configuration);
   }

@@ -12,8 +12,8 @@
 // robot.add_link("right", "hand", {.name = "b", .type = spherule::JointType::kContinuous});
 // robot.mimic("b", "a", -1.0);
 // const spherule::JointPositions positions(robot);
-// spherule::JointPositions::Room room = positions.room_for(1);
-// assert(robot.variable_count() == 1 && positions.of(std::vector{0.5}, room)[1] == -0.5);
+// spherule::JointPositions::Scratch scratch = positions.scratch_for(1);
+// assert(robot.variable_count() == 1 && positions.of(std::vector{0.5}, scratch)[1] == -0.5);
 // @endcode
 
 #include "robot/model/robot_model.h"
@@ -27,29 +27,29 @@ namespace spherule {
 // From configurations, one number for each variable, to the positions of all joints that move,
 // mimics included, in the order of RobotModel::joints(): the variables of a MechanismCheck that has
 // a frame for each of these joints. Where no joint mimics another, both are the same numbers and
-// nothing is done. Immutable; threads may share it, each with a Room of its own.
+// nothing is done. Immutable; threads may share it, each with a Scratch of its own.
 class JointPositions {
  public:
   // Of the joints of this robot.
   explicit JointPositions(const RobotModel& robot);
 
   // What is written to: the positions of several configurations.
-  struct Room {
+  struct Scratch {
     std::vector<double> positions{};
   };
-  // Room for so many configurations.
-  Room room_for(std::size_t configurations) const;
+  // For so many configurations.
+  Scratch scratch_for(std::size_t configurations) const;
 
   // The positions in a configuration of as many numbers as the robot has variables. The result is a
-  // view of `configuration` itself or, with mimics, of `room`, where it is kept at a `place` below
-  // the number that the room was made for. Sizes are not checked. Allocates nothing.
-  std::span<const double> of(std::span<const double> configuration, Room& room,
+  // view of `configuration` itself or, with mimics, of `scratch`, where it is kept at a `place`
+  // below the number that it was made for. Sizes are not checked. Allocates nothing.
+  std::span<const double> of(std::span<const double> configuration, Scratch& scratch,
                              std::size_t place = 0) const {
-    return has_mimics_ ? computed(configuration, room, place) : configuration;
+    return has_mimics_ ? computed(configuration, scratch, place) : configuration;
   }
 
  private:
-  std::span<const double> computed(std::span<const double> configuration, Room& room,
+  std::span<const double> computed(std::span<const double> configuration, Scratch& scratch,
                                    std::size_t place) const;
 
   bool has_mimics_;

@@ -185,25 +185,25 @@ bool BodyPairs::in_filter_range(std::span<const double> configuration) const {
   });
 }
 
-void BodyPairs::place(std::span<const double> configuration, Memory& memory) const {
-  forward_kinematics(robot_, configuration, memory.world_from_link, world_from_root_);
-  memory.configuration.assign(configuration.begin(), configuration.end());
-  memory.placed.resize(pieces_.size());
+void BodyPairs::place(std::span<const double> configuration, Scratch& scratch) const {
+  forward_kinematics(robot_, configuration, scratch.world_from_link, world_from_root_);
+  scratch.configuration.assign(configuration.begin(), configuration.end());
+  scratch.placed.resize(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Sphere sphere = pieces_[i].tree->sphere(0);
-    memory.placed[i] = {pose_of(pieces_[i], memory) * sphere.center, sphere.radius};
+    scratch.placed[i] = {pose_of(pieces_[i], scratch) * sphere.center, sphere.radius};
   }
-  memory.pad =
+  scratch.pad =
       in_filter_range(configuration) ? kSpherePad * size_ : std::numeric_limits<double>::infinity();
 }
 
 // From the centre of a piece's root sphere to a primitive; -infinity for other obstacles.
-double BodyPairs::signed_distance(const CheckedPair& pair, const Memory& memory) const {
+double BodyPairs::signed_distance(const CheckedPair& pair, const Scratch& scratch) const {
   const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
   const Primitive* const solid = std::get_if<Primitive>(&obstacle.shape);
   if (solid == nullptr) return -std::numeric_limits<double>::infinity();
   const Eigen::Vector3d center = obstacle.world_from_shape.matrix().transpose() *
-                                 (memory.placed[static_cast<std::size_t>(pair.piece)].center -
+                                 (scratch.placed[static_cast<std::size_t>(pair.piece)].center -
                                   obstacle.world_from_shape.translation());
   return std::visit([&](const auto& shape) { return field_of(shape).signed_distance(center); },
                     *solid);
@@ -211,63 +211,63 @@ double BodyPairs::signed_distance(const CheckedPair& pair, const Memory& memory)
 
 // True only if the canonical test for this clearance would say no.
 bool BodyPairs::spheres_apart(const CheckedPair& pair, double clearance,
-                              const Memory& memory) const {
-  const Sphere& a = memory.placed[static_cast<std::size_t>(pair.piece)];
+                              const Scratch& scratch) const {
+  const Sphere& a = scratch.placed[static_cast<std::size_t>(pair.piece)];
   if (pair.is_obstacle) {
-    const double reach = a.radius + (clearance * (1.0 + 1e-9) + 2.0 * memory.pad);
+    const double reach = a.radius + (clearance * (1.0 + 1e-9) + 2.0 * scratch.pad);
     if (is_beyond(static_cast<std::size_t>(pair.other), a.center, reach)) return true;
-    return signed_distance(pair, memory) > reach;
+    return signed_distance(pair, scratch) > reach;
   }
-  const Sphere& b = memory.placed[static_cast<std::size_t>(pair.other)];
-  const double limit = (a.radius + b.radius) + (clearance * (1.0 + 1e-9) + memory.pad);
+  const Sphere& b = scratch.placed[static_cast<std::size_t>(pair.other)];
+  const double limit = (a.radius + b.radius) + (clearance * (1.0 + 1e-9) + scratch.pad);
   return (a.center - b.center).squaredNorm() > limit * limit;
 }
 
-bool BodyPairs::touches(std::size_t index, const Memory& memory) const {
+bool BodyPairs::touches(std::size_t index, const Scratch& scratch) const {
   const CheckedPair& pair = pairs_[index];
-  if (spheres_apart(pair, 0.0, memory) || is_proved_free(index, memory)) return false;
+  if (spheres_apart(pair, 0.0, scratch) || is_proved_free(index, scratch)) return false;
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   bool touch = false;
   if (pair.is_obstacle) {
     const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
     touch = with_shape(obstacle, [&](const auto& shape) {
-      return collides(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape);
+      return collides(*a.tree, pose_of(a, scratch), shape, obstacle.world_from_shape);
     });
   } else {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
-    touch = collides(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory));
+    touch = collides(*a.tree, pose_of(a, scratch), *b.tree, pose_of(b, scratch));
   }
-  return touch && (!is_confirmed(pair) || meshes_within(pair, 0.0, memory));
+  return touch && (!is_confirmed(pair) || meshes_within(pair, 0.0, scratch));
 }
 
 // A robot that touches often did so a moment ago, in the same place.
-bool BodyPairs::any_touches(Memory& memory) const {
-  if (memory.last < static_tree_pairs_begin_ && touches(memory.last, memory)) return true;
+bool BodyPairs::any_touches(Scratch& scratch) const {
+  if (scratch.last < static_tree_pairs_begin_ && touches(scratch.last, scratch)) return true;
   for (std::size_t i = 0; i < static_tree_pairs_begin_; ++i) {
-    if (i == memory.last || !touches(i, memory)) continue;
-    memory.last = i;
+    if (i == scratch.last || !touches(i, scratch)) continue;
+    scratch.last = i;
     return true;
   }
   return false;
 }
 
-bool BodyPairs::is_near(std::size_t index, double clearance, const Memory& memory) const {
+bool BodyPairs::is_near(std::size_t index, double clearance, const Scratch& scratch) const {
   const CheckedPair& pair = pairs_[index];
   if (!(clearance <= kMaxCoordinate)) return true;
-  return !spheres_apart(pair, clearance, memory) && spheres_within(pair, clearance, memory) &&
-         (!is_confirmed(pair) || meshes_within(pair, clearance, memory));
+  return !spheres_apart(pair, clearance, scratch) && spheres_within(pair, clearance, scratch) &&
+         (!is_confirmed(pair) || meshes_within(pair, clearance, scratch));
 }
 
 bool BodyPairs::spheres_within(const CheckedPair& pair, double clearance,
-                               const Memory& memory) const {
+                               const Scratch& scratch) const {
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   if (!pair.is_obstacle) {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
-    return within(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory), clearance);
+    return within(*a.tree, pose_of(a, scratch), *b.tree, pose_of(b, scratch), clearance);
   }
   const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
   return with_shape(obstacle, [&](const auto& shape) {
-    return within(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape, clearance);
+    return within(*a.tree, pose_of(a, scratch), shape, obstacle.world_from_shape, clearance);
   });
 }
 
@@ -279,13 +279,13 @@ bool BodyPairs::is_confirmed(const CheckedPair& pair) const {
 
 // The padding of a side whose mesh is known is not in what is tested; that of spheres is.
 bool BodyPairs::meshes_within(const CheckedPair& pair, double clearance,
-                              const Memory& memory) const {
+                              const Scratch& scratch) const {
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   const auto other = static_cast<std::size_t>(pair.other);
   const CheckedPiece* const b = pair.is_obstacle ? nullptr : &pieces_[other];
   const CoveredMesh* const mesh_b = b != nullptr ? b->mesh.get() : obstacles_[other].mesh.get();
-  const Pose& pose_a = pose_of(a, memory);
-  const Pose& pose_b = b != nullptr ? pose_of(*b, memory) : obstacles_[other].world_from_shape;
+  const Pose& pose_a = pose_of(a, scratch);
+  const Pose& pose_b = b != nullptr ? pose_of(*b, scratch) : obstacles_[other].world_from_shape;
   double reach = clearance;
   if (a.mesh != nullptr) reach = sum_up(reach, a.padding);
   if (b != nullptr && mesh_b != nullptr) reach = sum_up(reach, b->padding);
@@ -305,31 +305,31 @@ bool BodyPairs::meshes_within(const CheckedPair& pair, double clearance,
   });
 }
 
-double BodyPairs::gap_bound(std::size_t index, const Memory& memory) const {
+double BodyPairs::gap_bound(std::size_t index, const Scratch& scratch) const {
   const CheckedPair& pair = pairs_[index];
-  const Sphere& a = memory.placed[static_cast<std::size_t>(pair.piece)];
-  if (pair.is_obstacle) return signed_distance(pair, memory) - a.radius - 2.0 * memory.pad;
-  const Sphere& b = memory.placed[static_cast<std::size_t>(pair.other)];
-  return distance_lower(a.center, b.center) - (a.radius + b.radius) - memory.pad;
+  const Sphere& a = scratch.placed[static_cast<std::size_t>(pair.piece)];
+  if (pair.is_obstacle) return signed_distance(pair, scratch) - a.radius - 2.0 * scratch.pad;
+  const Sphere& b = scratch.placed[static_cast<std::size_t>(pair.other)];
+  return distance_lower(a.center, b.center) - (a.radius + b.radius) - scratch.pad;
 }
 
-DistanceResult BodyPairs::distance(std::size_t index, const Memory& memory,
+DistanceResult BodyPairs::distance(std::size_t index, const Scratch& scratch,
                                    const DistanceRequest& request) const {
   const CheckedPair& pair = pairs_[index];
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   if (!pair.is_obstacle) {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
-    return spherule::distance(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory), request);
+    return spherule::distance(*a.tree, pose_of(a, scratch), *b.tree, pose_of(b, scratch), request);
   }
   const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
   return with_shape(obstacle, [&](const auto& shape) {
-    return spherule::distance(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape,
+    return spherule::distance(*a.tree, pose_of(a, scratch), shape, obstacle.world_from_shape,
                               request);
   });
 }
 
 std::optional<PairContact> BodyPairs::deepest_contact(std::size_t index,
-                                                      const Memory& memory) const {
+                                                      const Scratch& scratch) const {
   const auto between_trees =
       [&](const std::optional<Contact>& found) -> std::optional<PairContact> {
     if (!found) return std::nullopt;
@@ -339,25 +339,26 @@ std::optional<PairContact> BodyPairs::deepest_contact(std::size_t index,
   const CheckedPair& pair = pairs_[index];
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
   if (is_confirmed(pair)) {
-    if (!touches(index, memory)) return std::nullopt;
+    if (!touches(index, scratch)) return std::nullopt;
     const auto other = static_cast<std::size_t>(pair.other);
     const bool is_padded = a.padding > 0.0 || (!pair.is_obstacle && pieces_[other].padding > 0.0);
     const auto& mesh_b = pair.is_obstacle ? obstacles_[other].mesh : pieces_[other].mesh;
     if (a.mesh != nullptr && mesh_b != nullptr && !is_padded) {
-      return between_trees(spherule::deepest_contact(
-          *a.mesh, pose_of(a, memory), *mesh_b,
-          pair.is_obstacle ? obstacles_[other].world_from_shape : pose_of(pieces_[other], memory)));
+      return between_trees(spherule::deepest_contact(*a.mesh, pose_of(a, scratch), *mesh_b,
+                                                     pair.is_obstacle
+                                                         ? obstacles_[other].world_from_shape
+                                                         : pose_of(pieces_[other], scratch)));
     }
   }
   if (!pair.is_obstacle) {
     const CheckedPiece& b = pieces_[static_cast<std::size_t>(pair.other)];
     return between_trees(
-        spherule::deepest_contact(*a.tree, pose_of(a, memory), *b.tree, pose_of(b, memory)));
+        spherule::deepest_contact(*a.tree, pose_of(a, scratch), *b.tree, pose_of(b, scratch)));
   }
   const PlacedShape& obstacle = obstacles_[static_cast<std::size_t>(pair.other)];
   return with_shape(obstacle, [&](const auto& shape) -> std::optional<PairContact> {
     const auto found =
-        spherule::deepest_contact(*a.tree, pose_of(a, memory), shape, obstacle.world_from_shape);
+        spherule::deepest_contact(*a.tree, pose_of(a, scratch), shape, obstacle.world_from_shape);
     if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, SphereTree>) {
       return between_trees(found);
     } else {

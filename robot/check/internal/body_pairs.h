@@ -72,7 +72,8 @@ class BodyPairs {
             std::vector<PlacedShape> obstacles, std::vector<CheckedPair> pairs,
             std::size_t static_tree_pairs_begin);
 
-  struct Memory {
+  // What the functions below write to.
+  struct Scratch {
     std::vector<double> configuration{};
     std::vector<Pose> world_from_link{};
     std::vector<Sphere> placed{};  // root spheres of the pieces, in the world, up to pad
@@ -97,35 +98,35 @@ class BodyPairs {
   bool in_filter_range(std::span<const double> configuration) const;
 
   // Takes a configuration; the functions below answer for it. Throws Error as forward_kinematics().
-  void place(std::span<const double> configuration, Memory& memory) const;
+  void place(std::span<const double> configuration, Scratch& scratch) const;
 
   // By the canonical tests, which find nothing where the pair is proved free.
-  bool touches(std::size_t pair, const Memory& memory) const;
+  bool touches(std::size_t pair, const Scratch& scratch) const;
   // Of the pairs before static_tree_pairs_begin().
-  bool any_touches(Memory& memory) const;
+  bool any_touches(Scratch& scratch) const;
   // Whether a pair is proved free in the configuration that was taken.
-  bool is_proved_free(std::size_t pair, const Memory& memory) const {
+  bool is_proved_free(std::size_t pair, const Scratch& scratch) const {
     const FreeBoxes* const boxes = pairs_[pair].boxes.get();
-    return boxes != nullptr && boxes->contains(memory.configuration);
+    return boxes != nullptr && boxes->contains(scratch.configuration);
   }
   // Of a pair that is_confirmed() and whose spheres touch: touches().
-  bool meshes_touch(std::size_t pair, const Memory& memory) const {
-    return meshes_within(pairs_[pair], 0.0, memory);
+  bool meshes_touch(std::size_t pair, const Scratch& scratch) const {
+    return meshes_within(pairs_[pair], 0.0, scratch);
   }
 
   // Never false if the two are within the clearance of each other in exact arithmetic or, where no
   // mesh is queried, the canonical test finds them so.
-  bool is_near(std::size_t pair, double clearance, const Memory& memory) const;
+  bool is_near(std::size_t pair, double clearance, const Scratch& scratch) const;
 
   // A lower bound of the exact gap of the spheres of a pair, found at once; -infinity if there is
   // none.
-  double gap_bound(std::size_t pair, const Memory& memory) const;
+  double gap_bound(std::size_t pair, const Scratch& scratch) const;
   // Of the spheres, whatever is confirmed.
-  DistanceResult distance(std::size_t pair, const Memory& memory,
+  DistanceResult distance(std::size_t pair, const Scratch& scratch,
                           const DistanceRequest& request) const;
   // None exactly if touches() is false, where the pair is not proved free; there the spheres
   // decide, unless meshes confirm them.
-  std::optional<PairContact> deepest_contact(std::size_t pair, const Memory& memory) const;
+  std::optional<PairContact> deepest_contact(std::size_t pair, const Scratch& scratch) const;
 
   // How far any point of a link may be from where the exact mechanism has it.
   double pose_error() const { return pose_error_; }
@@ -134,13 +135,13 @@ class BodyPairs {
   double middle_error() const { return middle_error_; }
 
  private:
-  const Pose& pose_of(const CheckedPiece& piece, const Memory& memory) const {
-    return memory.world_from_link[static_cast<std::size_t>(piece.link)];
+  const Pose& pose_of(const CheckedPiece& piece, const Scratch& scratch) const {
+    return scratch.world_from_link[static_cast<std::size_t>(piece.link)];
   }
-  double signed_distance(const CheckedPair& pair, const Memory& memory) const;
-  bool spheres_apart(const CheckedPair& pair, double clearance, const Memory& memory) const;
-  bool spheres_within(const CheckedPair& pair, double clearance, const Memory& memory) const;
-  bool meshes_within(const CheckedPair& pair, double clearance, const Memory& memory) const;
+  double signed_distance(const CheckedPair& pair, const Scratch& scratch) const;
+  bool spheres_apart(const CheckedPair& pair, double clearance, const Scratch& scratch) const;
+  bool spheres_within(const CheckedPair& pair, double clearance, const Scratch& scratch) const;
+  bool meshes_within(const CheckedPair& pair, double clearance, const Scratch& scratch) const;
   // True only if the solid is farther than `reach` from the sphere's centre in the world; the pad
   // is in it.
   bool is_beyond(std::size_t obstacle, const Eigen::Vector3d& center, double reach) const {

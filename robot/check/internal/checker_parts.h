@@ -33,26 +33,26 @@ struct RobotChecker::Parts {
         bodies(std::move(body_names)),
         obstacles(std::move(obstacle_names)) {
     if (pairs.static_tree_pairs_begin() == pairs.pairs().size()) return;
-    standing.emplace(pairs, options.instructions);
+    static_trees.emplace(pairs, options.instructions);
   }
-  // `lanes` and `standing` refer to `pairs`.
+  // `lanes` and `static_trees` refer to `pairs`.
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  // Whether neither `standing` nor BodyPairs::in_filter_range() refuses numbers that are not
+  // Whether neither `static_trees` nor BodyPairs::in_filter_range() refuses numbers that are not
   // finite.
   bool requires_finite() const {
-    return enforces_limits || (!standing && pairs.static_tree_pairs_begin() == 0);
+    return enforces_limits || (!static_trees && pairs.static_tree_pairs_begin() == 0);
   }
 
   RobotModel robot;
   bool enforces_limits;
   ShortestMotion shortest;
-  // All pairs. Those from pairs.static_tree_pairs_begin() on are of static trees: `standing` tests
-  // them in configurations.
+  // All pairs. Those from pairs.static_tree_pairs_begin() on are of static trees: `static_trees`
+  // tests them in configurations.
   internal::BodyPairs pairs;
   internal::LaneCheck lanes;  // of these
-  std::optional<internal::StaticTrees> standing;
+  std::optional<internal::StaticTrees> static_trees;
   std::vector<Named> bodies;     // of CheckedPiece::body
   std::vector<Named> obstacles;  // of pairs.obstacles()
 };
@@ -62,9 +62,9 @@ struct RobotChecker::Scratch::Memory {
       : owner(std::move(parts)), lanes(check) {}
 
   std::shared_ptr<const Parts> owner;
-  internal::LaneCheck::Memory lanes;
-  internal::BodyPairs::Memory pairs{};
-  std::optional<internal::StaticTrees::Memory> standing{};
+  internal::LaneCheck::Scratch lanes;
+  internal::BodyPairs::Scratch pairs{};
+  std::optional<internal::StaticTrees::Scratch> static_trees{};
   std::vector<double> motion_end{};  // of ContinuousMotion::kShortest
 };
 

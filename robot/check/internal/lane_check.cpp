@@ -57,32 +57,32 @@ bool LaneCheck::never_touch(std::span<const double> configuration) const {
 void LaneCheck::decide_fixed_pairs(std::span<const std::size_t> pairs) {
   // Of both bodies, in both configurations, with the slack of the canonical test: 4.
   constexpr double kFar = 8.0;
-  BodyPairs::Memory memory;
+  BodyPairs::Scratch scratch;
   pairs_.place(std::vector<double>(static_cast<std::size_t>(pairs_.robot().variable_count())),
-               memory);
+               scratch);
   const MovingFrames frames(pairs_.robot());
   for (const std::size_t pair : pairs) {
     const CheckedPiece& piece =
         pairs_.pieces()[static_cast<std::size_t>(pairs_.pairs()[pair].piece)];
     const bool is_static = frames.frame_of_link[static_cast<std::size_t>(piece.link)] < 0;
-    if (is_static && pairs_.touches(pair, memory)) {
+    if (is_static && pairs_.touches(pair, scratch)) {
       motions_have_static_contact_ = true;
       configs_have_static_contact_ |= pair < pairs_.static_tree_pairs_begin();
     }
-    if (!is_static && pairs_.is_near(pair, kFar * pairs_.pose_error(), memory)) {
+    if (!is_static && pairs_.is_near(pair, kFar * pairs_.pose_error(), scratch)) {
       rigid_pairs_.push_back(pair);
     }
   }
 }
 
 template <class Real>
-LaneCheck::Memory::Stage<Real>::Stage(const CompiledPlan<Real>& compiled, const WidePlan* wide,
-                                      const WideScratch* wide_scratch)
+LaneCheck::Scratch::Stage<Real>::Stage(const CompiledPlan<Real>& compiled, const WidePlan* wide,
+                                       const WideScratch* wide_scratch)
     : plan(compiled, wide, wide_scratch),
       open(static_cast<std::size_t>(compiled.plan().word_count) * kPlanLanes),
       near(open.size()) {}
 
-LaneCheck::Memory::Memory(const LaneCheck& check)
+LaneCheck::Scratch::Scratch(const LaneCheck& check)
     : wide_config_plan_(check.config_plan_->plan(), *check.wide_config_plan_),
       config_plan_(*check.config_plan_, &check.wide_config_plan_->plan(),
                    &wide_config_plan_.view()),
@@ -92,7 +92,7 @@ LaneCheck::Memory::Memory(const LaneCheck& check)
                              : nullptr,
                          &wide_config_plan_.view()),
       motion_plan_double_(*check.motion_plan_double_, nullptr, nullptr),
-      room_(check.positions_.room_for(kLanes)),
+      positions_(check.positions_.scratch_for(kLanes)),
       proofs_(check.pairs_) {
   const auto positions =
       static_cast<std::size_t>(std::max(1, check.motion_plan_float_->plan().position_count));
@@ -109,15 +109,15 @@ struct ConfigurationClient {
   const CompiledPlan<float>& plan;
   std::span<const std::size_t> pair_of_test;
   std::span<const std::span<const double>> configurations;
-  BodyPairs::Memory& memory;
+  BodyPairs::Scratch& scratch;
   int placed = -1;
 
   static bool touches(void* context, int lane, std::int32_t test) {
     auto& self = *static_cast<ConfigurationClient*>(context);
     if (std::exchange(self.placed, lane) != lane) {
-      self.pairs.place(self.configurations[static_cast<std::size_t>(lane)], self.memory);
+      self.pairs.place(self.configurations[static_cast<std::size_t>(lane)], self.scratch);
     }
-    return self.pairs.touches(self.pair_of(test), self.memory);
+    return self.pairs.touches(self.pair_of(test), self.scratch);
   }
   static bool is_proved_free(void* context, int lane, std::int32_t test) {
     const auto& self = *static_cast<ConfigurationClient*>(context);
@@ -143,7 +143,7 @@ struct ConfigurationClient {
 }  // namespace
 
 bool LaneCheck::rigid_pairs_touch(std::span<const double> configuration,
-                                  BodyPairs::Memory& canonical) const {
+                                  BodyPairs::Scratch& canonical) const {
   if (rigid_pairs_.empty()) return false;
   pairs_.place(configuration, canonical);
   return std::any_of(rigid_pairs_.begin(), rigid_pairs_.end(),
@@ -151,7 +151,7 @@ bool LaneCheck::rigid_pairs_touch(std::span<const double> configuration,
 }
 
 unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurations,
-                             Memory& memory, BodyPairs::Memory& canonical) const {
+                             Scratch& scratch, BodyPairs::Scratch& canonical) const {
   const unsigned all = (1U << configurations.size()) - 1;
   if (configs_have_static_contact_) return all;
   unsigned rigid = 0;
@@ -160,29 +160,29 @@ unsigned LaneCheck::contacts(std::span<const std::span<const double>> configurat
   }
   const CheckPlan<float>& plan = config_plan_->plan();
   if (plan.test_count == 0) return rigid;
-  const PlanScratch<float>& scratch = memory.config_plan_.view();
+  const PlanScratch<float>& lanes = scratch.config_plan_.view();
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t i = std::min(lane, configurations.size() - 1);
-    const std::span<const double> at = positions_.of(configurations[i], memory.room_, lane);
-    for (std::size_t p = 0; p < at.size(); ++p) scratch.positions[p].lane[lane] = at[p];
+    const std::span<const double> at = positions_.of(configurations[i], scratch.positions_, lane);
+    for (std::size_t p = 0; p < at.size(); ++p) lanes.positions[p].lane[lane] = at[p];
   }
   ConfigurationClient client{pairs_, *config_plan_, pair_of_test_, configurations, canonical};
   const bool skips_never = std::all_of(
       configurations.begin(), configurations.end(),
       [&](std::span<const double> configuration) { return never_touch(configuration); });
-  return rigid | kernels_.check_lanes(plan, scratch, all & ~rigid, client.client(skips_never));
+  return rigid | kernels_.check_lanes(plan, lanes, all & ~rigid, client.client(skips_never));
 }
 
-bool LaneCheck::touches(std::span<const double> configuration, Memory& memory,
-                        BodyPairs::Memory& canonical) const {
+bool LaneCheck::touches(std::span<const double> configuration, Scratch& scratch,
+                        BodyPairs::Scratch& canonical) const {
   if (configs_have_static_contact_ || rigid_pairs_touch(configuration, canonical)) return true;
   const CheckPlan<float>& plan = config_plan_->plan();
   if (plan.test_count == 0) return false;
-  const WideScratch& scratch = memory.wide_config_plan_.view();
-  const std::span<const double> at = positions_.of(configuration, memory.room_);
-  std::copy(at.begin(), at.end(), scratch.positions);
+  const WideScratch& wide = scratch.wide_config_plan_.view();
+  const std::span<const double> at = positions_.of(configuration, scratch.positions_);
+  std::copy(at.begin(), at.end(), wide.positions);
   ConfigurationClient client{pairs_, *config_plan_, pair_of_test_, {&configuration, 1}, canonical};
-  return kernels_.check_one(plan, wide_config_plan_->plan(), scratch,
+  return kernels_.check_one(plan, wide_config_plan_->plan(), wide,
                             client.client(never_touch(configuration)));
 }
 

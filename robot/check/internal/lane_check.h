@@ -28,9 +28,9 @@ class LaneCheck {
   LaneCheck(const BodyPairs& pairs, InstructionSet instructions);
 
   // What a query writes to.
-  class Memory {
+  class Scratch {
    public:
-    explicit Memory(const LaneCheck& check);
+    explicit Scratch(const LaneCheck& check);
 
    private:
     friend class LaneCheck;
@@ -47,7 +47,7 @@ class LaneCheck {
     PlanMemory<float> config_plan_;
     Stage<float> motion_plan_float_;
     Stage<double> motion_plan_double_;
-    JointPositions::Room room_;
+    JointPositions::Scratch positions_;
     std::vector<double> from_;  // positions
     std::vector<double> to_;
     std::vector<double> variables_;
@@ -62,18 +62,18 @@ class LaneCheck {
 
   // A bit for each of up to kLanes configurations in which any of the pairs of BodyPairs before
   // static_tree_pairs_begin() touches, by the canonical tests. Each must be in_filter_range().
-  unsigned contacts(std::span<const std::span<const double>> configurations, Memory& memory,
-                    BodyPairs::Memory& canonical) const;
+  unsigned contacts(std::span<const std::span<const double>> configurations, Scratch& scratch,
+                    BodyPairs::Scratch& canonical) const;
 
   // The same of one configuration.
-  bool touches(std::span<const double> configuration, Memory& memory,
-               BodyPairs::Memory& canonical) const;
+  bool touches(std::span<const double> configuration, Scratch& scratch,
+               BodyPairs::Scratch& canonical) const;
 
   // The straight motion up to the fraction `end`, all pairs of BodyPairs, as RobotChecker says of
   // check_edge(). Both ends must be in_filter_range(), the resolution above zero.
   EdgeResult check_edge(std::span<const double> from, std::span<const double> to, double end,
-                        const EdgeRequest& request, Memory& memory,
-                        BodyPairs::Memory& canonical) const;
+                        const EdgeRequest& request, Scratch& scratch,
+                        BodyPairs::Scratch& canonical) const;
 
  private:
   class Edge;
@@ -87,7 +87,8 @@ class LaneCheck {
   void find_never_ranges();
   bool never_touch(std::span<const double> configuration) const;
   void decide_fixed_pairs(std::span<const std::size_t> pairs);
-  bool rigid_pairs_touch(std::span<const double> configuration, BodyPairs::Memory& canonical) const;
+  bool rigid_pairs_touch(std::span<const double> configuration,
+                         BodyPairs::Scratch& canonical) const;
 
   const BodyPairs& pairs_;
   JointPositions positions_;

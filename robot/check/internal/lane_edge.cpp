@@ -30,20 +30,20 @@ constexpr double kUndecided = 4.0;
 class LaneCheck::Edge {
  public:
   Edge(const LaneCheck& check, std::span<const double> from, std::span<const double> to, double end,
-       const EdgeRequest& request, Memory& memory, BodyPairs::Memory& canonical)
+       const EdgeRequest& request, Scratch& scratch, BodyPairs::Scratch& canonical)
       : check_(check),
         pairs_(check.pairs_),
         from_(from),
         to_(to),
         end_(end),
         request_(request),
-        memory_(memory),
+        scratch_(scratch),
         canonical_(canonical) {
-    const std::span<const double> start = check_.positions_.of(from, memory.room_, 0);
-    const std::span<const double> finish = check_.positions_.of(to, memory.room_, 1);
-    std::copy(start.begin(), start.end(), memory.from_.begin());
-    std::copy(finish.begin(), finish.end(), memory.to_.begin());
-    memory.proofs_.take(from, to);
+    const std::span<const double> start = check_.positions_.of(from, scratch.positions_, 0);
+    const std::span<const double> finish = check_.positions_.of(to, scratch.positions_, 1);
+    std::copy(start.begin(), start.end(), scratch.from_.begin());
+    std::copy(finish.begin(), finish.end(), scratch.to_.begin());
+    scratch.proofs_.take(from, to);
     skips_never_ = check.never_touch(from) && check.never_touch(to);
   }
 
@@ -67,11 +67,11 @@ class LaneCheck::Edge {
   static double middle_of(const Part& part) { return 0.5 * part.begin + 0.5 * part.end; }
 
   template <class Real>
-  Memory::Stage<Real>& stage() {
+  Scratch::Stage<Real>& stage() {
     if constexpr (std::is_same_v<Real, float>) {
-      return memory_.motion_plan_float_;
+      return scratch_.motion_plan_float_;
     } else {
-      return memory_.motion_plan_double_;
+      return scratch_.motion_plan_double_;
     }
   }
   template <class Real>
@@ -99,11 +99,11 @@ class LaneCheck::Edge {
     constexpr double kLonger = 1.0 + 0x1p-20;  // above the roundings of differences and of Real
     const PlanScratch<Real>& scratch = stage<Real>().plan.view();
     double total = 0.0;
-    for (std::size_t p = 0; p < memory_.from_.size(); ++p) {
-      const double rate = memory_.to_[p] - memory_.from_[p];
-      const double largest = std::max(std::abs(memory_.from_[p]), std::abs(memory_.to_[p]));
-      scratch.from[p] = memory_.from_[p];
-      scratch.to[p] = memory_.to_[p];
+    for (std::size_t p = 0; p < scratch_.from_.size(); ++p) {
+      const double rate = scratch_.to_[p] - scratch_.from_[p];
+      const double largest = std::max(std::abs(scratch_.from_[p]), std::abs(scratch_.to_[p]));
+      scratch.from[p] = scratch_.from_[p];
+      scratch.to[p] = scratch_.to_[p];
       scratch.rates[p] = static_cast<Real>(rate);
       scratch.speeds[p] = static_cast<Real>(std::abs(rate) * kLonger);
       scratch.shifts[p] = static_cast<Real>(largest * kLonger);
@@ -119,7 +119,7 @@ class LaneCheck::Edge {
   template <class Real>
   bool prove(const Part& whole, const std::uint64_t* open) {
     set_motion<Real>();
-    Memory::Stage<Real>& stage = this->stage<Real>();
+    Scratch::Stage<Real>& stage = this->stage<Real>();
     stage.waiting.clear(static_cast<std::size_t>(compiled<Real>().plan().word_count));
     Batch batch;
     bool goes_on = true;
@@ -172,7 +172,7 @@ class LaneCheck::Edge {
   // Up to eight parts from the top of the stack in which something may be found.
   template <class Real>
   bool take(Batch& batch) {
-    Memory::Stage<Real>& stage = this->stage<Real>();
+    Scratch::Stage<Real>& stage = this->stage<Real>();
     const auto words = static_cast<std::size_t>(compiled<Real>().plan().word_count);
     batch.count = 0;
     batch.is_all = false;
@@ -193,7 +193,7 @@ class LaneCheck::Edge {
   // False once there is no more to be found.
   template <class Real>
   bool evaluate(const Batch& taken) {
-    Memory::Stage<Real>& stage = this->stage<Real>();
+    Scratch::Stage<Real>& stage = this->stage<Real>();
     const CheckPlan<Real>& plan = compiled<Real>().plan();
     const auto words = static_cast<std::size_t>(plan.word_count);
     const std::array<Part, kPlanLanes>& parts = taken.parts;
@@ -267,10 +267,10 @@ class LaneCheck::Edge {
         unproved_from_ = std::min(unproved_from_, part.begin);
         return true;
       }
-      memory_.undecided_.assign(open, open + check_.motion_plan_float_->plan().word_count);
+      scratch_.undecided_.assign(open, open + check_.motion_plan_float_->plan().word_count);
       const auto times = times_;
       const auto halves = halves_;
-      const bool goes_on = prove<double>(part, memory_.undecided_.data());
+      const bool goes_on = prove<double>(part, scratch_.undecided_.data());
       times_ = times;
       halves_ = halves;
       return goes_on;
@@ -309,8 +309,8 @@ class LaneCheck::Edge {
   template <class Real>
   std::size_t pair_at(double at, const CompiledPlan<Real>& plan, std::int32_t test) {
     if (std::exchange(placed_, at) != at) {
-      take_between(from_, to_, at, memory_.variables_);
-      pairs_.place(memory_.variables_, canonical_);
+      take_between(from_, to_, at, scratch_.variables_);
+      pairs_.place(scratch_.variables_, canonical_);
     }
     return pair_of(plan, test);
   }
@@ -354,17 +354,17 @@ class LaneCheck::Edge {
     }
     static bool is_proved_free(void* context, int lane, std::int32_t test) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      return edge.memory_.proofs_.is_free_at(edge.pair_of(edge.compiled<Real>(), test),
-                                             edge.times_[static_cast<std::size_t>(lane)]);
+      return edge.scratch_.proofs_.is_free_at(edge.pair_of(edge.compiled<Real>(), test),
+                                              edge.times_[static_cast<std::size_t>(lane)]);
     }
     static bool is_motion_proved(void* context, std::int32_t test) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      return edge.memory_.proofs_.is_free(edge.pair_of(edge.compiled<Real>(), test));
+      return edge.scratch_.proofs_.is_free(edge.pair_of(edge.compiled<Real>(), test));
     }
     static unsigned proved_parts(void* context, std::int32_t test, unsigned lanes) {
       Edge& edge = static_cast<Client*>(context)->edge;
-      return edge.memory_.proofs_.free_parts(edge.pair_of(edge.compiled<Real>(), test), edge.times_,
-                                             edge.halves_, lanes);
+      return edge.scratch_.proofs_.free_parts(edge.pair_of(edge.compiled<Real>(), test),
+                                              edge.times_, edge.halves_, lanes);
     }
   };
 
@@ -374,8 +374,8 @@ class LaneCheck::Edge {
   std::span<const double> to_;
   const double end_;
   const EdgeRequest& request_;
-  Memory& memory_;
-  BodyPairs::Memory& canonical_;
+  Scratch& scratch_;
+  BodyPairs::Scratch& canonical_;
   EdgeResult result_;
   bool skips_never_ = false;
   std::array<bool, 2> is_bounded_{};
@@ -388,9 +388,9 @@ class LaneCheck::Edge {
 };
 
 EdgeResult LaneCheck::check_edge(std::span<const double> from, std::span<const double> to,
-                                 double end, const EdgeRequest& request, Memory& memory,
-                                 BodyPairs::Memory& canonical) const {
-  return Edge(*this, from, to, end, request, memory, canonical).run();
+                                 double end, const EdgeRequest& request, Scratch& scratch,
+                                 BodyPairs::Scratch& canonical) const {
+  return Edge(*this, from, to, end, request, scratch, canonical).run();
 }
 
 }  // namespace spherule::internal

@@ -15,7 +15,7 @@ StaticTrees::StaticTrees(const BodyPairs& pairs, InstructionSet instructions)
     : pairs_(pairs), positions_(pairs.robot()) {
   const RobotModel& robot = pairs.robot();
   const MovingFrames frames(robot);
-  BodyPairs::Memory at_zero;
+  BodyPairs::Scratch at_zero;
   pairs.place(std::vector<double>(static_cast<std::size_t>(robot.variable_count())), at_zero);
   const Pose root_from_world = pairs.world_from_root().inverse();
   std::vector<MechanismBody> bodies;
@@ -41,7 +41,7 @@ StaticTrees::StaticTrees(const BodyPairs& pairs, InstructionSet instructions)
     has_meshes = has_meshes || pairs.is_confirmed(pair);
     const Body body{&piece, frames.frame_of_link[link], frames.frame_from_link[link]};
     if (body.frame < 0) {
-      always_ = always_ || pairs.touches(i, at_zero);
+      has_static_contact_ = has_static_contact_ || pairs.touches(i, at_zero);
       continue;
     }
     if (body_of_piece[index] < 0) {
@@ -59,19 +59,19 @@ StaticTrees::StaticTrees(const BodyPairs& pairs, InstructionSet instructions)
       MechanismCheckOptions{.instructions = instructions, .always_exact = has_meshes});
 }
 
-bool StaticTrees::touch(std::span<const double> configuration, Memory& memory) const {
-  const std::span<const double> positions = positions_.of(configuration, memory.room_);
-  if (!MechanismCheck::is_in_range(positions)) return touch_exactly(configuration, memory);
-  if (always_) return true;
+bool StaticTrees::touch(std::span<const double> configuration, Scratch& scratch) const {
+  const std::span<const double> positions = positions_.of(configuration, scratch.positions_);
+  if (!MechanismCheck::is_in_range(positions)) return touch_exactly(configuration, scratch);
+  if (has_static_contact_) return true;
   bool is_placed = false;
-  memory.unconfirmed_.clear();
+  scratch.unconfirmed_.clear();
   const auto confirm = [&](const MechanismContact& contact) {
-    return touches(configuration, contact, is_placed, memory);
+    return touches(configuration, contact, is_placed, scratch);
   };
-  return check_->collides(positions, memory.check_, confirm) || contains_component(memory);
+  return check_->collides(positions, scratch.check_, confirm) || contains_component(scratch);
 }
 
-void StaticTrees::find_free(std::span<const double> configurations, Memory& memory,
+void StaticTrees::find_free(std::span<const double> configurations, Scratch& scratch,
                             std::span<std::uint8_t> free) const {
   constexpr std::size_t kBlock = MechanismCheck::kBlock;
   const auto variables = static_cast<std::size_t>(pairs_.robot().variable_count());
@@ -83,26 +83,26 @@ void StaticTrees::find_free(std::span<const double> configurations, Memory& memo
     std::array<const double*, kBlock> block;  // filled up with the last one
     for (std::size_t i = 0; i < kBlock; ++i) {
       const std::size_t index = std::min(first + i, last);
-      block[i] = positions_.of(configuration(index), memory.room_, i).data();
+      block[i] = positions_.of(configuration(index), scratch.positions_, i).data();
     }
     int placed = -1;
     std::uint32_t unconfirmed = 0;
     const MechanismCheck::BlockAnswer answer =
-        check_->collides(block, memory.check_, [&](int index, const MechanismContact& contact) {
+        check_->collides(block, scratch.check_, [&](int index, const MechanismContact& contact) {
           bool is_placed = std::exchange(placed, index) == index;
-          memory.unconfirmed_.clear();
+          scratch.unconfirmed_.clear();
           const std::size_t queried = std::min(first + static_cast<std::size_t>(index), last);
-          const bool touch = touches(configuration(queried), contact, is_placed, memory);
-          if (!memory.unconfirmed_.empty()) unconfirmed |= 1U << index;
+          const bool touch = touches(configuration(queried), contact, is_placed, scratch);
+          if (!scratch.unconfirmed_.empty()) unconfirmed |= 1U << index;
           return touch;
         });
     for (std::size_t i = first; i <= last; ++i) {
       const auto says = [&](std::uint32_t bits) { return (bits >> (i - first) & 1U) != 0; };
-      bool hit = always_ || says(answer.collides);
+      bool hit = has_static_contact_ || says(answer.collides);
       if (says(answer.out_of_range)) {
-        hit = touch_exactly(configuration(i), memory);
+        hit = touch_exactly(configuration(i), scratch);
       } else if (!hit && says(unconfirmed)) {
-        hit = touch(configuration(i), memory);
+        hit = touch(configuration(i), scratch);
       }
       free[i] = hit ? 0 : 1;
     }
@@ -111,50 +111,51 @@ void StaticTrees::find_free(std::span<const double> configurations, Memory& memo
 
 StaticTrees::AlongFinding StaticTrees::check_along(std::span<const double> from,
                                                    std::span<const double> to, bool needs_contact,
-                                                   Memory& memory) const {
-  if (always_) return AlongFinding::kUndecided;
-  const std::optional<bool> is_free = check_->is_free_along(
-      positions_.of(from, memory.room_, 0), positions_.of(to, memory.room_, 1), memory.check_);
+                                                   Scratch& scratch) const {
+  if (has_static_contact_) return AlongFinding::kUndecided;
+  const std::optional<bool> is_free =
+      check_->is_free_along(positions_.of(from, scratch.positions_, 0),
+                            positions_.of(to, scratch.positions_, 1), scratch.check_);
   if (is_free.value_or(false)) return AlongFinding::kFree;
   if (!is_free || !needs_contact) return AlongFinding::kUndecided;
-  memory.middle_.resize(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i) memory.middle_[i] = 0.5 * from[i] + 0.5 * to[i];
-  return touch(memory.middle_, memory) ? AlongFinding::kTouchesInTheMiddle
-                                       : AlongFinding::kUndecided;
+  scratch.middle_.resize(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) scratch.middle_[i] = 0.5 * from[i] + 0.5 * to[i];
+  return touch(scratch.middle_, scratch) ? AlongFinding::kTouchesInTheMiddle
+                                         : AlongFinding::kUndecided;
 }
 
 // Whether the robot touches an obstacle at the contact, or where it last did. `is_placed` says
-// whether the memory holds the configuration's poses.
+// whether the scratch holds the configuration's poses.
 bool StaticTrees::touches(std::span<const double> configuration, const MechanismContact& contact,
-                          bool& is_placed, Memory& memory) const {
+                          bool& is_placed, Scratch& scratch) const {
   if (!std::exchange(is_placed, true)) {
-    pairs_.place(configuration, memory.placed_);
-    if (memory.last_ && still_touches(*memory.last_, memory)) return true;
+    pairs_.place(configuration, scratch.placed_);
+    if (scratch.last_ && still_touches(*scratch.last_, scratch)) return true;
   }
   const bool is_known =
-      std::any_of(memory.unconfirmed_.begin(), memory.unconfirmed_.end(), [&](const auto& pair) {
+      std::any_of(scratch.unconfirmed_.begin(), scratch.unconfirmed_.end(), [&](const auto& pair) {
         return pair.body == contact.pair.body && pair.obstacle == contact.pair.obstacle;
       });
   if (is_known && !are_meshes(contact.pair)) return false;
-  const Finding finding = find(contact, memory);
-  if (finding == Finding::kSpheres && !is_known) memory.unconfirmed_.push_back(contact.pair);
+  const Finding finding = find(contact, scratch);
+  if (finding == Finding::kSpheres && !is_known) scratch.unconfirmed_.push_back(contact.pair);
   return finding == Finding::kTouch;
 }
 
 // The canonical test of the spheres, and that of the meshes; the latter is for a body and an
 // obstacle as a whole unless both are meshes.
-StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Memory& memory) const {
+StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Scratch& scratch) const {
   const Body& body = body_of(contact.pair);
   const Obstacle& obstacle = obstacle_of(contact.pair);
-  const Pose& world_from_body = pose_of(body, memory);
+  const Pose& world_from_body = pose_of(body, scratch);
   if (body.piece->mesh != nullptr && obstacle.mesh == nullptr) {
     // One triangle often tells, and if it is deep in the sphere, both tests would agree.
     const auto [triangle, depth] =
         nearest_triangle(*body.piece->mesh, contact.body_sphere, world_from_body, *obstacle.tree,
                          contact.obstacle_sphere, obstacle.world_from_tree);
     if (depth > 0.0) {
-      memory.last_ = {contact, {triangle, contact.obstacle_sphere}};
-      if (check_->is_following(memory.check_)) remember(*memory.last_, depth, memory);
+      scratch.last_ = {contact, {triangle, contact.obstacle_sphere}};
+      if (check_->is_following(scratch.check_)) remember(*scratch.last_, depth, scratch);
       return Finding::kTouch;
     }
   }
@@ -165,16 +166,16 @@ StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Memory& 
   if (!are_meshes(contact.pair)) {
     const std::size_t pair = pair_of(contact.pair);
     const bool touch =
-        !pairs_.is_confirmed(pairs_.pairs()[pair]) || pairs_.meshes_touch(pair, memory.placed_);
+        !pairs_.is_confirmed(pairs_.pairs()[pair]) || pairs_.meshes_touch(pair, scratch.placed_);
     return touch ? Finding::kTouch : Finding::kSpheres;
   }
   const std::optional<TrianglePair> triangles =
       touching_triangles(*body.piece->mesh, contact.body_sphere, world_from_body, *obstacle.mesh,
                          contact.obstacle_sphere, obstacle.world_from_tree);
   if (!triangles) return Finding::kSpheres;
-  memory.last_ = {contact, *triangles};
-  if (check_->is_following(memory.check_)) {
-    remember(*memory.last_, depth_of(*memory.last_, memory), memory);
+  scratch.last_ = {contact, *triangles};
+  if (check_->is_following(scratch.check_)) {
+    remember(*scratch.last_, depth_of(*scratch.last_, scratch), scratch);
   }
   return Finding::kTouch;
 }
@@ -182,31 +183,31 @@ StaticTrees::Finding StaticTrees::find(const MechanismContact& contact, Memory& 
 // A robot that touches often did so a moment ago, by the same triangles or by others near to them.
 // Where the depth at the former triangles proves nothing, two meshes are tested at the spheres
 // above those; after that, the contact that the MechanismCheck wants confirmed decides.
-bool StaticTrees::still_touches(const Touch& touch, Memory& memory) const {
-  if (check_->is_following(memory.check_)) {
-    const double depth = depth_of(touch, memory);
+bool StaticTrees::still_touches(const Touch& touch, Scratch& scratch) const {
+  if (check_->is_following(scratch.check_)) {
+    const double depth = depth_of(touch, scratch);
     if (depth > 0.0) {
-      remember(touch, depth, memory);
+      remember(touch, depth, scratch);
       return true;
     }
   }
-  return are_meshes(touch.contact.pair) && find(touch.contact, memory) == Finding::kTouch;
+  return are_meshes(touch.contact.pair) && find(touch.contact, scratch) == Finding::kTouch;
 }
 
-double StaticTrees::depth_of(const Touch& touch, const Memory& memory) const {
+double StaticTrees::depth_of(const Touch& touch, const Scratch& scratch) const {
   const Body& body = body_of(touch.contact.pair);
   const Obstacle& obstacle = obstacle_of(touch.contact.pair);
   return obstacle.mesh != nullptr
-             ? contact_depth(*body.piece->mesh, pose_of(body, memory), *obstacle.mesh,
+             ? contact_depth(*body.piece->mesh, pose_of(body, scratch), *obstacle.mesh,
                              obstacle.world_from_tree, touch.triangles)
-             : contact_depth(*body.piece->mesh, touch.triangles.a, pose_of(body, memory),
+             : contact_depth(*body.piece->mesh, touch.triangles.a, pose_of(body, scratch),
                              *obstacle.tree, touch.triangles.b, obstacle.world_from_tree);
 }
 
 // The poses of forward_kinematics() are within pose_error() of those of the exact mechanism, now
 // and at any configuration for which the MechanismCheck reuses the contact; as much again covers
 // the error of the sphere that it remembers.
-void StaticTrees::remember(const Touch& touch, double depth, Memory& memory) const {
+void StaticTrees::remember(const Touch& touch, double depth, Scratch& scratch) const {
   if (depth <= 3.0 * pairs_.pose_error()) return;
   const Body& body = body_of(touch.contact.pair);
   const auto& [p, q, r] = body.piece->mesh->mesh().triangle(touch.triangles.a);
@@ -214,25 +215,25 @@ void StaticTrees::remember(const Touch& touch, double depth, Memory& memory) con
   const double radius =
       std::max({distance_upper(center, p), distance_upper(center, q), distance_upper(center, r)});
   check_->remember_contact(body.frame, {body.frame_from_link * center, radius},
-                           depth - 3.0 * pairs_.pose_error(), memory.check_);
+                           depth - 3.0 * pairs_.pose_error(), scratch.check_);
 }
 
-// Where no triangles touch but spheres do, under the poses that the memory holds.
-bool StaticTrees::contains_component(const Memory& memory) const {
+// Where no triangles touch but spheres do, under the poses that the scratch holds.
+bool StaticTrees::contains_component(const Scratch& scratch) const {
   return std::any_of(
-      memory.unconfirmed_.begin(), memory.unconfirmed_.end(), [&](const MechanismPair& pair) {
+      scratch.unconfirmed_.begin(), scratch.unconfirmed_.end(), [&](const MechanismPair& pair) {
         if (!are_meshes(pair)) return false;
         const Body& body = body_of(pair);
         const Obstacle& obstacle = obstacle_of(pair);
-        return spherule::contains_component(*body.piece->mesh, pose_of(body, memory),
+        return spherule::contains_component(*body.piece->mesh, pose_of(body, scratch),
                                             *obstacle.mesh, obstacle.world_from_tree);
       });
 }
 
-bool StaticTrees::touch_exactly(std::span<const double> configuration, Memory& memory) const {
-  pairs_.place(configuration, memory.placed_);
+bool StaticTrees::touch_exactly(std::span<const double> configuration, Scratch& scratch) const {
+  pairs_.place(configuration, scratch.placed_);
   for (std::size_t i = pairs_.static_tree_pairs_begin(); i < pairs_.pairs().size(); ++i) {
-    if (pairs_.touches(i, memory.placed_)) return true;
+    if (pairs_.touches(i, scratch.placed_)) return true;
   }
   return false;
 }

@@ -37,30 +37,30 @@ class StaticTrees {
   StaticTrees(const BodyPairs& pairs, InstructionSet instructions);
 
   // What a query writes to. Those of several threads share no cache line.
-  class alignas(64) Memory {
+  class alignas(64) Scratch {
    public:
     // For these.
-    explicit Memory(const StaticTrees& trees)
-        : check_(*trees.check_), room_(trees.positions_.room_for(MechanismCheck::kBlock)) {}
+    explicit Scratch(const StaticTrees& trees)
+        : check_(*trees.check_), positions_(trees.positions_.scratch_for(MechanismCheck::kBlock)) {}
 
    private:
     friend class StaticTrees;
     MechanismCheck::Scratch check_;
-    BodyPairs::Memory placed_{};
+    BodyPairs::Scratch placed_{};
     std::vector<double> middle_{};
     std::vector<MechanismPair> unconfirmed_{};  // spheres touch, but the meshes do not
     std::optional<Touch> last_{};
-    JointPositions::Room room_;
+    JointPositions::Scratch positions_;
   };
 
-  // Fastest where each configuration is near the one before: the memory then knows how far the
+  // Fastest where each configuration is near the one before: the scratch then knows how far the
   // robot was from everything, or how deep in it. The configuration has as many numbers as the
   // robot has variables; throws Error if one is not finite, and where forward_kinematics() does.
-  bool touch(std::span<const double> configuration, Memory& memory) const;
+  bool touch(std::span<const double> configuration, Scratch& scratch) const;
 
   // The same of many, which lie one behind the other: free[i] is 1 if the i-th touches nothing,
   // otherwise 0. Several times faster where neighbours differ little.
-  void find_free(std::span<const double> configurations, Memory& memory,
+  void find_free(std::span<const double> configurations, Scratch& scratch,
                  std::span<std::uint8_t> free) const;
 
   // Of a straight motion from one configuration to another: whether it is free, as RobotChecker
@@ -69,7 +69,7 @@ class StaticTrees {
   // BodyPairs::in_filter_range().
   enum class AlongFinding { kFree, kTouchesInTheMiddle, kUndecided };
   AlongFinding check_along(std::span<const double> from, std::span<const double> to,
-                           bool needs_contact, Memory& memory) const;
+                           bool needs_contact, Scratch& scratch) const;
 
  private:
   // A piece that variables move, with its mesh, if that is known.
@@ -95,8 +95,8 @@ class StaticTrees {
            static_cast<std::size_t>(pair.obstacle);
   }
   std::size_t pair_of(const MechanismPair& pair) const { return pair_of_[place_of(pair)]; }
-  static const Pose& pose_of(const Body& body, const Memory& memory) {
-    return memory.placed_.world_from_link[static_cast<std::size_t>(body.piece->link)];
+  static const Pose& pose_of(const Body& body, const Scratch& scratch) {
+    return scratch.placed_.world_from_link[static_cast<std::size_t>(body.piece->link)];
   }
   // Whether two meshes without padding stand for the two: contacts are then confirmed sphere by
   // sphere, on the triangles under them.
@@ -106,21 +106,21 @@ class StaticTrees {
   }
 
   enum class Finding { kApart, kSpheres, kTouch };
-  Finding find(const MechanismContact& contact, Memory& memory) const;
-  bool still_touches(const Touch& touch, Memory& memory) const;
-  double depth_of(const Touch& touch, const Memory& memory) const;
-  void remember(const Touch& touch, double depth, Memory& memory) const;
+  Finding find(const MechanismContact& contact, Scratch& scratch) const;
+  bool still_touches(const Touch& touch, Scratch& scratch) const;
+  double depth_of(const Touch& touch, const Scratch& scratch) const;
+  void remember(const Touch& touch, double depth, Scratch& scratch) const;
   bool touches(std::span<const double> configuration, const MechanismContact& contact,
-               bool& is_placed, Memory& memory) const;
-  bool contains_component(const Memory& memory) const;
-  bool touch_exactly(std::span<const double> configuration, Memory& memory) const;
+               bool& is_placed, Scratch& scratch) const;
+  bool contains_component(const Scratch& scratch) const;
+  bool touch_exactly(std::span<const double> configuration, Scratch& scratch) const;
 
   const BodyPairs& pairs_;
   JointPositions positions_;
   std::vector<Body> bodies_;
   std::vector<Obstacle> obstacles_;
   std::vector<std::size_t> pair_of_;  // of BodyPairs, for each body and obstacle
-  bool always_ = false;               // a piece that stands with the root touches
+  bool has_static_contact_ = false;   // of a piece that stands with the root
   std::unique_ptr<const MechanismCheck> check_;
 };
 
