@@ -2,6 +2,7 @@
 #include "bench/robot_edges/arm.h"
 
 #include "mesh/io/mesh_io.h"
+#include "robot/check/sample_collisions.h"
 #include "robot/cover/link_bodies.h"
 #include "robot/files/urdf.h"
 #include "spheretree/build.h"

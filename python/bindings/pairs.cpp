@@ -4,6 +4,7 @@
 #include "python/bindings/bindings.h"
 #include "python/bindings/long_run.h"
 #include "python/bindings/robots.h"
+#include "robot/check/sample_collisions.h"
 #include "robot/cover/link_bodies.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "robot/check/sample_collisions.h"
+
 #include "robot/check/internal/body_pairs.h"
 #include "robot/model/internal/random_configuration.h"
-#include "robot/pairs/allowed_collisions.h"
 #include "spheretree/error.h"
 
 #include <random>
 
 namespace spherule {
+
 SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollisions& allowed,
                                     const SampleCollisionsOptions& options) {
   if (options.configurations == 0) throw Error("sample", "it has no configurations");

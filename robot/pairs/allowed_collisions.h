@@ -121,34 +121,4 @@ class AllowedCollisions {
   std::vector<AllowedReason> reasons_;
 };
 
-// How configurations are sampled.
-struct SampleCollisionsOptions {
-  std::size_t configurations = 10000;  // drawn evenly between the joint limits
-  std::uint64_t seed = 1;
-};
-
-// How often two links touched.
-struct SampledPair {
-  int first = 0;  // the smaller index
-  int second = 0;
-  std::size_t touched = 0;                        // in so many configurations
-  AllowedReason reason = AllowedReason::kTested;  // kNever, kAlways, or neither
-};
-
-// What sampling found.
-struct SampledCollisions {
-  std::size_t configurations = 0;
-  std::vector<SampledPair> pairs;  // all that were tested, in order
-};
-
-// Counts how often links touch whose pair `allowed` does not hold already: what MoveIt's setup
-// assistant does. It is a sample: a pair that never touched in it may touch elsewhere, and what is
-// then allowed because of it is no longer proved free. Turning joints without limits are drawn from
-// a whole turn. Equal for equal input and seed. Throws Error for no configurations.
-SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollisions& allowed,
-                                    const SampleCollisionsOptions& options = {});
-
-// Allows what never touched, and what always did.
-void allow_sampled(const SampledCollisions& sampled, AllowedCollisions& allowed);
-
 }  // namespace spherule

@@ -2,6 +2,7 @@
 #include "robot/pairs/allowed_collisions.h"
 
 #include "collide/collide.h"
+#include "robot/check/sample_collisions.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/error.h"
 #include "tests/collide/trees.h"
