@@ -13,6 +13,7 @@
 #include <fcl/narrowphase/distance.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <set>
@@ -105,13 +106,38 @@ TEST(FclQueries, ResultsAreFresh) {
   EXPECT_NEAR(api::distance(&here, &far, api::DistanceRequestd(), distance), 3.0, 1e-12);
 }
 
+// The least gap of two of the spheres, poses taken as exact; its own rounding is far below that of
+// double.
+long double least_gap(const SphereTree& a, const Pose& pose_a, const SphereTree& b,
+                      const Pose& pose_b) {
+  using Vector = Eigen::Matrix<long double, 3, 1>;
+  const auto placed = [](const Sphere& sphere, const Pose& pose) -> Vector {
+    return pose.matrix().cast<long double>() * sphere.center.cast<long double>() +
+           pose.translation().cast<long double>();
+  };
+  long double least = std::numeric_limits<long double>::infinity();
+  for (const Sphere& one : a.spheres()) {
+    for (const Sphere& other : b.spheres()) {
+      const long double gap = (placed(one, pose_a) - placed(other, pose_b)).norm() -
+                              static_cast<long double>(one.radius) -
+                              static_cast<long double>(other.radius);
+      least = std::min(least, gap);
+    }
+  }
+  return least;
+}
+
 TEST(FclQueries, DistanceIsALowerBound) {
   const auto a = row_of_spheres<double>(10), b = row_of_spheres<double>(8);
   const auto a_float = row_of_spheres<float>(10), b_float = row_of_spheres<float>(8);
   test::Random random(2);
+  int apart = 0;
+  int apart_in_float = 0;
   for (int i = 0; i < 300; ++i) {
     const fcl::Transform3d tf_a = test::random_transform(random, 5.0);
     const fcl::Transform3d tf_b = test::random_transform(random, 40.0);
+    const long double gap =
+        least_gap(*a->part().spheres, api::from_fcl(tf_a), *b->part().spheres, api::from_fcl(tf_b));
     const DistanceResult expected =
         distance(*a->part().spheres, api::from_fcl(tf_a), *b->part().spheres, api::from_fcl(tf_b));
     api::DistanceResultd result;
@@ -122,18 +148,28 @@ TEST(FclQueries, DistanceIsALowerBound) {
                   fcl::Transform3f(tf_b.cast<float>()), api::DistanceRequestf(), result_float);
     if (expected.lower == 0.0) {
       EXPECT_EQ(result.min_distance, -1.0);
+      EXPECT_LE(gap, 1e-11L);
       continue;
     }
+    ++apart;
+    EXPECT_LE(static_cast<long double>(result.min_distance), gap);
+    EXPECT_GE(static_cast<long double>(result.min_distance), gap - 1e-11L);
     EXPECT_EQ(result.min_distance, expected.lower);
     EXPECT_NEAR((result.nearest_points[0] - result.nearest_points[1]).norm(), expected.upper,
                 1e-12 * 40.0);
+    const Pose rounded_a = api::from_fcl(fcl::Transform3f(tf_a.cast<float>()));
+    const Pose rounded_b = api::from_fcl(fcl::Transform3f(tf_b.cast<float>()));
     const DistanceResult rounded =
-        distance(*a->part().spheres, api::from_fcl(fcl::Transform3f(tf_a.cast<float>())),
-                 *b->part().spheres, api::from_fcl(fcl::Transform3f(tf_b.cast<float>())));
+        distance(*a->part().spheres, rounded_a, *b->part().spheres, rounded_b);
     if (rounded.lower == 0.0) continue;
+    ++apart_in_float;
+    EXPECT_LE(static_cast<long double>(result_float.min_distance),
+              least_gap(*a->part().spheres, rounded_a, *b->part().spheres, rounded_b));
     EXPECT_LE(double(result_float.min_distance), rounded.lower);
     EXPECT_GE(double(result_float.min_distance), rounded.lower * (1.0 - 0x1p-22));
   }
+  EXPECT_GT(apart, 200);
+  EXPECT_GT(apart_in_float, 200);
 }
 
 TEST(FclQueries, ConfirmedContactsAreTrianglesThatTouch) {
