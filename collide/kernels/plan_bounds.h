@@ -1,9 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Bounds of the speed and the acceleration of bodies against the root and against each other, eight
-// at a time: what PathReach::bounds() computes (the proof is with it), in lanes. Part of the
-// kernels, see plan_kernel_impl.h.
+// Bounds of the speed and the acceleration of bodies against the root and against each other (for
+// G6), eight at a time. Part of the kernels, see plan_kernel_impl.h.
+//
+// Of the joints that lie on the way from one body to the other only these matter, whatever moves
+// both. Let them be numbered from the first body on, and let joint k change at the constant rate
+// w_k. Look from the link behind joint s at a point p of the first body, which joints 1 to s move:
+// joint k, that is, takes with it all that is on the first body's side of it. Let z_k be its axis
+// and o_k a point of that. With the joint's position x_k,
+//     dp / dx_k = z_k x (p - o_k), or z_k for a shift;
+//     d2p / dx_j dx_k = z_j x (dp / dx_k) for j >= k if joint j turns, otherwise 0,
+// because joint j, nearer to the observer, turns all of what k does. Neither is longer than
+// r_k, the distance of p from the axis of k, or 1 for a shift. So the speed of p is at most the sum
+// of w_k r_k, and its acceleration at most the sum over k of
+//     w_k r_k (w_k t_k + 2 (w_(k+1) t_(k+1) + ... + w_s t_s)),
+// t_j being 1 if joint j turns, otherwise 0. PathSum adds what joint j contributes to half of that:
+//     w_j t_j (w_j r_j / 2 + w_1 r_1 + ... + w_(j-1) r_(j-1)).
+// The same holds for the second body from the other side, and the motion of a point of one as seen
+// from a point of the other, in the directions of the link behind s, is at most both together. Any
+// s will do, and the smallest sum over all counts. Against the root s is behind the last joint.
+//
+// r_k is at most what the step has without shifts (the proof is in
+// robot/model/internal/path_reach.cpp) and the largest shift of each prismatic joint before it.
+//
+// Rounding. No term is negative. A sum over n joints of rates times sums over n joints errs by
+// less than (3 n + 8) v of itself, v being the unit roundoff of Real: bound_slack exceeds that.
 
 #include "collide/kernels/plan_vectors.h"
 

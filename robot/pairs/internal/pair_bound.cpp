@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/internal/pair_bound.h"
 
-#include "robot/model/internal/path_reach.h"
 #include "robot/pairs/free_boxes.h"
 #include "robot/pairs/internal/hull_direction.h"
 

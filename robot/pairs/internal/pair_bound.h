@@ -21,8 +21,8 @@
 // w_j = z_j x (p - o_j) or z_j, t_j = 1 where joint j turns, else 0, r_j = d_j + sum over i < j of
 // c_i d_i, or 1 for a shift. Proof: on the straight line from x0 the velocity at x0 is the sum of
 // dx_j w_j, and half of the greatest acceleration bounds what is left. That is at most the sum of
-// path_reach.cpp, with r_j at least the distance of p from axis j anywhere in the box: the joints
-// inside of j move p by at most their telescope, in the frame that carries axis j.
+// collide/kernels/plan_bounds.h, with r_j at least the distance of p from axis j anywhere in the
+// box: the joints inside of j move p by at most their telescope, in the frame that carries axis j.
 //
 // The smaller of the two is the loss of p for this s. The same holds for the second link from the
 // other side.
@@ -49,7 +49,7 @@
 // err by less than 4 (2 e) (the argument of path_reach.cpp), which are added to each; q, a distance
 // of two images, by less than 8 u (reach + L) < e, which is added to it. The sums that
 // follow are of positive terms, with at most 3 k^2 + 40 roundings, k <= 16: less than
-// kRelativeSlack = 1e-9 of them, which is added, and which covers sines, mimics' factors (4 u), and
+// kRelativeSlack of them, which is added, and which covers sines, mimics' factors (4 u), and
 // |n| = 1 +- 4 u in the products with losses.
 // n . a - n . b: two images 4 e; products and sums 6 u (|a| + |b|) with |a|, |b| <= reach + L,
 // which is below e; |n| turns a gap g into g (1 +- 4 u), of the same sign. Then the gap has to
@@ -67,6 +67,7 @@
 namespace spherule::internal {
 
 inline constexpr double kSlackOfError = 8.0;
+inline constexpr double kRelativeSlack = 1e-9;
 
 class PairBound {
  public:

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bounds of how fast two points of a robot approach each other, against their distances under
-// forward_kinematics() all along the motion.
+// forward_kinematics() all along the motion. That the kernels compute the same:
+// plan_bounds_test.cpp.
 
 #include "robot/model/internal/path_reach.h"
 
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/kinematics.h"
 #include "tests/robot/check/edge_oracle.h"
+#include "tests/robot/model/path_bounds.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 
@@ -71,8 +73,7 @@ TEST(PathReach, BoundsHowDistancesChange) {
         b_is_static
             ? internal::PathReach(robot, poses, 1e-13, joints, a.link, a.sphere)
             : internal::PathReach(robot, poses, 1e-13, joints, a.link, a.sphere, b.link, b.sphere);
-    std::vector<internal::PathBounds> work;
-    const internal::PathBounds bounds = reach.bounds(rates, shifts, work);
+    const PathBounds bounds = path_bounds(reach, !b_is_static, rates, shifts);
     std::vector<Pose> placed;
     const auto distance = [&](double t) {
       forward_kinematics(robot, on_the_way(from, to, t), placed);
@@ -111,9 +112,8 @@ TEST(PathReach, CountsTurnsThatAddUp) {
       {.type = JointType::kContinuous, .parent_from_joint = Pose::from_translation({1, 0, 0})});
   const std::vector<int> joints = {1, 0};
   const internal::PathReach reach(robot, poses_at_zero(robot), 1e-15, joints, 2, {{1, 0, 0}, 0.0});
-  std::vector<internal::PathBounds> work;
-  const internal::PathBounds bounds =
-      reach.bounds(std::vector<double>{1.0, 1.0}, std::vector<double>{0.0, 0.0}, work);
+  const PathBounds bounds =
+      path_bounds(reach, false, std::vector<double>{1.0, 1.0}, std::vector<double>{0.0, 0.0});
   EXPECT_NEAR(bounds.speed, 3.0, 1e-6);
   EXPECT_NEAR(bounds.bend, 2.5, 1e-6);
   std::vector<Pose> placed;
