@@ -28,9 +28,10 @@ namespace spherule {
 
 // Where a URDF finds its files.
 struct UrdfOptions {
-  // Roots of packages: package://NAME/REST is the file REST below packages[NAME]. A package that is
-  // not given is searched for upwards from the URDF file: a folder with a package.xml of that name,
-  // or in such a folder one that is called as the package and has one.
+  // Roots of packages: package://NAME/REST is the file REST below packages[NAME]; slashes before
+  // NAME mean nothing (package:///NAME/REST). A package that is not given is searched for upwards
+  // from the URDF file: a folder with a package.xml of that name, or in such a folder one that is
+  // called as the package and has one.
   std::map<std::string, std::filesystem::path> packages{};
   // Whether a mesh that is missing is an error. Otherwise its path is what the file names.
   bool require_visual_meshes = true;

@@ -93,6 +93,14 @@ TEST(Text, Lines) {
   EXPECT_EQ(internal::take_line(rest), "");
 }
 
+TEST(Text, EscapesOfUrls) {
+  EXPECT_EQ(internal::percent_escape("%20.stl"), ' ');
+  EXPECT_EQ(internal::percent_escape("%aF"), '\xaf');
+  for (const char* none : {"", "a%20", "%", "%2", "%2g", "%g2", "%00", "%%20"}) {
+    EXPECT_FALSE(internal::percent_escape(none)) << none;
+  }
+}
+
 TEST(Text, WordsAndQuotes) {
   using Words = std::vector<std::string_view>;
   EXPECT_EQ(internal::words_of(" one\ttwo\r\n\nthree"), (Words{"one", "two", "three"}));

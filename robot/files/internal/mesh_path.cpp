@@ -81,8 +81,9 @@ fs::path MeshPaths::find(const std::string& name) {
   const std::string_view view = name;
   fs::path path;
   if (view.starts_with(kPackage)) {
-    const std::size_t slash = std::min(view.find('/', kPackage.size()), view.size());
-    const std::string package(view.substr(kPackage.size(), slash - kPackage.size()));
+    const std::size_t begin = std::min(view.find_first_not_of('/', kPackage.size()), view.size());
+    const std::size_t slash = std::min(view.find('/', begin), view.size());
+    const std::string package(view.substr(begin, slash - begin));
     if (package.empty()) throw Error(name, "it names no package");
     auto root = packages_.find(package);
     if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;

@@ -163,12 +163,15 @@ TEST(ReadUrdf, FindsMeshes) {
   EXPECT_EQ(find("package://the_arm/a.stl"), "src/arm/a.stl");
   EXPECT_EQ(find("package://the_arm/urdf/c.stl"), "src/arm/urdf/c.stl");
   EXPECT_EQ(find("package://tool/meshes/b.stl"), "src/tool/meshes/b.stl");
+  EXPECT_EQ(find("package:///tool/meshes/b.stl"), "src/tool/meshes/b.stl");
+  EXPECT_EQ(find("package:////the_arm/a.stl"), "src/arm/a.stl");
   const UrdfOptions given{
       .packages = {{"x", folder.path() / "src"}, {"tool", folder.path() / "src/arm"}}};
   EXPECT_EQ(find("package://x/tool/meshes/b.stl", given), "src/tool/meshes/b.stl");
   EXPECT_EQ(find("package://tool/a.stl", given), "src/arm/a.stl");
-  for (const char* missing : {"d.stl", "package://arm/a.stl", "package://the_arm/b.stl",
-                              "package://the_arm", "package://", "model://x/a.stl", "../urdf"}) {
+  for (const char* missing :
+       {"d.stl", "package://arm/a.stl", "package://the_arm/b.stl", "package://the_arm",
+        "package://", "package:///", "package:///x", "model://x/a.stl", "../urdf"}) {
     EXPECT_THROW(find(missing), Error) << missing;
   }
 }
