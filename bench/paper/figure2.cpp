@@ -20,15 +20,15 @@ constexpr double kExternal = 0.030;
 TriangleMesh slotted_block() {
   constexpr double kWidth = 0.120, kHeight = 0.060, kDepth = 0.030;
   constexpr double kSlot = 0.012, kFloor = 0.015;
-  Loop specification = {{0.0, 0.0}, {kWidth, 0.0}, {kWidth, kHeight}};
+  Loop outline = {{0.0, 0.0}, {kWidth, 0.0}, {kWidth, kHeight}};
   for (const double middle : {0.090, 0.060, 0.030}) {
-    specification.insert(specification.end(), {{middle + 0.5 * kSlot, kHeight},
-                                               {middle + 0.5 * kSlot, kFloor},
-                                               {middle - 0.5 * kSlot, kFloor},
-                                               {middle - 0.5 * kSlot, kHeight}});
+    outline.insert(outline.end(), {{middle + 0.5 * kSlot, kHeight},
+                                   {middle + 0.5 * kSlot, kFloor},
+                                   {middle - 0.5 * kSlot, kFloor},
+                                   {middle - 0.5 * kSlot, kHeight}});
   }
-  specification.push_back({0.0, kHeight});
-  return placed(extrude(specification, {}, 0.0, kDepth), profile_xz(), Eigen::Vector3d::Zero());
+  outline.push_back({0.0, kHeight});
+  return placed(extrude(outline, {}, 0.0, kDepth), profile_xz(), Eigen::Vector3d::Zero());
 }
 
 Figure2::Fit packed(const TriangleMesh& part) {

@@ -17,7 +17,7 @@ Loop circle(const Eigen::Vector2d& center, double radius, int sides, double phas
 Loop rectangle(const Eigen::Vector2d& center, const Eigen::Vector2d& size, double radius = 0.0,
                int steps = 4);
 
-// Specification of two circles and their outer tangents; `steps` chords on each arc. Neither circle
+// Outline of two circles and their outer tangents; `steps` chords on each arc. Neither circle
 // may contain the other.
 Loop belt(const Eigen::Vector2d& a, double radius_a, const Eigen::Vector2d& b, double radius_b,
           int steps);

@@ -51,9 +51,9 @@ TriangleMesh motor(double radius, double length, int sides) {
 // Triangular gussets in vertical planes around the z axis, from `inner` to `outer`.
 void add_ribs(TriangleMesh& mesh, int count, double inner, double outer, double bottom, double top,
               double thickness) {
-  const Loop specification{{inner, bottom}, {outer, bottom}, {inner, top}};
-  const TriangleMesh rib = placed(extrude(specification, {}, -0.5 * thickness, 0.5 * thickness),
-                                  profile_xz(), {0, 0, 0});
+  const Loop outline{{inner, bottom}, {outer, bottom}, {inner, top}};
+  const TriangleMesh rib =
+      placed(extrude(outline, {}, -0.5 * thickness, 0.5 * thickness), profile_xz(), {0, 0, 0});
   for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i + 0.5) / count;
     add_turned(mesh, rib, Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix());
@@ -117,13 +117,13 @@ TriangleMesh link_1() {
 TriangleMesh link_2() {
   TriangleMesh mesh;
   // The lower arm from axis 2 to axis 3: a web with holes, rims on both sides, hubs at the ends.
-  const Loop specification = belt(kOrigin, 0.125, {0.0, 0.89}, 0.1, 8);
+  const Loop outline = belt(kOrigin, 0.125, {0.0, 0.89}, 0.1, 8);
   std::vector<Loop> web_holes;
   for (const double z : {0.24, 0.40, 0.56, 0.70}) web_holes.push_back(circle({0.0, z}, 0.05, 8));
-  add_turned(mesh, extrude(specification, web_holes, -0.03, 0.03), profile_xz());
+  add_turned(mesh, extrude(outline, web_holes, -0.03, 0.03), profile_xz());
   const Loop window = belt({0.0, 0.2}, 0.075, {0.0, 0.72}, 0.065, 6);
   for (const double y : {-0.03, 0.09}) {
-    add_turned(mesh, extrude(specification, {window}, 0.0, 0.06), profile_xz(), {0.0, y, 0.0});
+    add_turned(mesh, extrude(outline, {window}, 0.0, 0.06), profile_xz(), {0.0, y, 0.0});
   }
   for (const double z : {0.0, 0.89}) {
     const double radius = z == 0.0 ? 0.115 : 0.09;

@@ -57,10 +57,9 @@ TriangleMesh make_pipe(double outer, double inner, double length, int sides) {
 }
 
 TriangleMesh make_l_bracket(double leg, double width, double thickness) {
-  const Loop specification{{0.0, 0.0},       {leg, 0.0}, {leg, thickness}, {thickness, thickness},
-                           {thickness, leg}, {0.0, leg}};
-  return placed(extrude(specification, {}, -0.5 * width, 0.5 * width), profile_xz(),
-                Vector3d::Zero());
+  const Loop outline{{0.0, 0.0},       {leg, 0.0}, {leg, thickness}, {thickness, thickness},
+                     {thickness, leg}, {0.0, leg}};
+  return placed(extrude(outline, {}, -0.5 * width, 0.5 * width), profile_xz(), Vector3d::Zero());
 }
 
 TriangleMesh make_plate_with_holes(const Vector3d& size, int holes_x, int holes_y,

@@ -19,12 +19,12 @@ TriangleMesh v_stand() {
   // The V's flanks stand at 45 degrees and stay a millimetre off the pipe.
   const double groove = (kPipeRadius + 0.001) * 1.4142;
   const double half = 0.03;
-  const Loop specification{{-half, -kWorkpieceHeight},
-                           {half, -kWorkpieceHeight},
-                           {half, half - groove},
-                           {0.0, -groove},
-                           {-half, half - groove}};
-  return placed(extrude(specification, {}, -0.012, 0.012), profile_xz(), Vector3d::Zero());
+  const Loop outline{{-half, -kWorkpieceHeight},
+                     {half, -kWorkpieceHeight},
+                     {half, half - groove},
+                     {0.0, -groove},
+                     {-half, half - groove}};
+  return placed(extrude(outline, {}, -0.012, 0.012), profile_xz(), Vector3d::Zero());
 }
 
 }  // namespace

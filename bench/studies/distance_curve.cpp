@@ -245,7 +245,7 @@ class Curve {
   ConfirmedPair confirmed_;
   std::vector<PairEngine*> colliding_;
   std::vector<PairEngine*> measuring_;
-  volatile double answer_ = 0.0;  // what is requested must happen though nobody examines it
+  volatile double answer_ = 0.0;  // what is timed must happen though nobody reads it
 };
 
 }  // namespace

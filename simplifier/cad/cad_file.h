@@ -63,7 +63,7 @@ struct UnprovedFace {
 struct CadPart {
   TriangleMesh mesh;
   double chord_error = 0.0;  // in the unit of the model, as the next three
-  double asked = 0.0;        // the aim
+  double asked = 0.0;        // the chord error that the tessellation aimed at
   double reached = 0.0;      // deviation found at some point: no bound below it is possible
   double tolerance = 0.0;    // of the edges and vertices; in chord_error
   bool proved = true;

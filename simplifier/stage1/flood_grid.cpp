@@ -105,7 +105,7 @@ void FloodGrid::unite_neighbours(std::size_t i, std::size_t mixed_from, Disjoint
 }
 
 // Cells around a surface become four times as many with every level once they are smaller than the
-// clearance that is requested; those of zones do not.
+// radius rho that a sphere must have there; those of zones do not.
 void FloodGrid::check_memory(int level, std::size_t halved) const {
   double next = 8.0 * static_cast<double>(halved);
   double total = static_cast<double>(cells_.size()) + next;

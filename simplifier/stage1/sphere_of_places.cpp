@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The radius that is asked for, over the one whose scallop is as high as those of the finest cells:
-// the rest is for surfaces that curve away from the sphere.
+// The radius of a wanted sphere, over the one whose scallop is as high as those of the finest
+// cells: the rest is for surfaces that curve away from the sphere.
 constexpr double kRadius = 1.5;
 // How often the cell is halved, across one axis each time, to prove that two balls hold it.
 constexpr int kMostHalvings = 9;

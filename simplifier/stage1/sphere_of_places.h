@@ -11,8 +11,8 @@
 
 namespace spherule::internal {
 
-// A cubic cell of the flood, and what is requested there. A *place* is a point from which the
-// surface is at least rho + padding away.
+// A cubic cell of the flood, and which spheres and grid step are required there. A *place* is a
+// point from which the surface is at least rho + padding away.
 struct PlaceCell {
   BoxCell box;             // a cube
   double rho;              // no more than any point of the cell requires

@@ -31,8 +31,9 @@ using Eigen::Vector3d;
 constexpr std::array kSpacings{0.7, 0.5, 0.3, 0.2, 0.14};
 constexpr std::size_t kFewCells = 10000;
 constexpr std::size_t kManyCells = 30000;
-// Rounds without a better answer, after which cells become finer, a search that was asked to be
-// long perturbs spheres, or the search ends: a share of the rounds that are allowed, within limits.
+// Rounds without a better answer, after which cells become finer, a search of more than the default
+// effort perturbs spheres, or the search ends: a share of the rounds that are allowed, within
+// limits.
 constexpr int kPatience = 1;
 constexpr int kStuck = 3;
 constexpr int kConvergedShare = 4;

@@ -88,14 +88,13 @@ TEST(Polygon, TrianglesFillTheOutlineLessItsHoles) {
   const auto disc = [](double radius, int sides) {
     return 0.5 * sides * radius * radius * std::sin(2.0 * pi / sides);
   };
-  const Loop specification = belt({0.0, 0.0}, 3.0, {8.0, 1.0}, 2.0, 10);
-  const double whole = area(specification, {});
+  const Loop outline = belt({0.0, 0.0}, 3.0, {8.0, 1.0}, 2.0, 10);
+  const double whole = area(outline, {});
   std::vector<Loop> holes = screw_holes({0.0, 0.0}, 2.0, 8, 0.3, 6);
-  EXPECT_NEAR(area(specification, holes), whole - 8 * disc(0.3, 6), 1e-6);
+  EXPECT_NEAR(area(outline, holes), whole - 8 * disc(0.3, 6), 1e-6);
   holes.push_back(circle({0.0, 0.0}, 1.0, 24));
   holes.push_back(circle({8.0, 1.0}, 1.5, 7, 0.3));
-  EXPECT_NEAR(area(specification, holes), whole - 8 * disc(0.3, 6) - disc(1.0, 24) - disc(1.5, 7),
-              1e-6);
+  EXPECT_NEAR(area(outline, holes), whole - 8 * disc(0.3, 6) - disc(1.0, 24) - disc(1.5, 7), 1e-6);
   EXPECT_NEAR(area(rectangle({1.0, 2.0}, {4.0, 6.0}, 1.0, 16), {}), 24.0 - 4.0 + pi, 0.01);
 }
 

@@ -145,7 +145,7 @@ TEST_F(CheckTest, BodiesThatAlwaysTouchGetAdvice) {
   const json pairs = json::parse(finer.out)["pairs"];
   ASSERT_EQ(pairs.size(), 1U) << pairs;
   EXPECT_EQ(pairs[0]["second"], "wall");
-  // Spheres that were given may be finer than anything that is requested.
+  // Spheres that were given may be finer than any that check would fit.
   write("cubes.json", R"({"a": {"centers": [[0, 0, 0]], "radii": [0.087]},
                           "c": {"centers": [[0, 0, 0]], "radii": [0.087]}})");
   const std::string given = checked_with({"--spheres", "cubes.json"}).out;

@@ -39,7 +39,7 @@ TEST_F(ViewTest, PageHoldsAllFiles) {
     EXPECT_EQ(page.find(mark), std::string::npos) << mark;
   }
   EXPECT_NE(page.find("Copyright (c) 2010-2019 three.js authors"), std::string::npos);
-  // Our own parts fetch nothing; of three.js only what is requested would.
+  // Our own parts fetch nothing; of three.js only its loaders would, which are not called.
   const std::size_t three = page.find("\nthree.js, release");
   const std::size_t after = page.find("</script>", three);
   ASSERT_LT(three, after);

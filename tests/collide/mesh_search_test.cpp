@@ -55,7 +55,7 @@ Triangle random_triangle(SceneRandom& random, double size) {
   return {a, a + edge, a + random.uniform(0.0, 1.0) * edge + random.point(size * thin)};
 }
 
-// Relative gaps at which contact is requested.
+// Relative gaps at which contact is tested.
 double random_gap(SceneRandom& random) {
   static constexpr double kGaps[] = {0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.1};
   return (random.whole(0, 1) == 0 ? -1.0 : 1.0) * kGaps[random.whole(0, 9)];

@@ -51,15 +51,14 @@ int more_sides(int sides) {
   return sides % 3 == 0 ? sides / 3 * 4 : sides / 2 * 3;
 }
 
-enum class SpecificationKind { kStraight, kRounded };
+enum class ProfileKind { kStraight, kRounded };
 
 // The fewest sides with which no corner stands out of the primitive by more than `chord_error`.
-// Those of a rounded outline, a polygon itself, stand out twice.
-int sides_for(double radius, SpecificationKind kind, double chord_error,
-              const std::string& subject) {
+// Those of a rounded profile, a polygon itself, stand out twice.
+int sides_for(double radius, ProfileKind kind, double chord_error, const std::string& subject) {
   for (int sides = kLeastSides; sides <= kMostSides; sides = more_sides(sides)) {
     const double factor = corner_factor(sides);
-    const double farthest = kind == SpecificationKind::kRounded ? factor * factor : factor;
+    const double farthest = kind == ProfileKind::kRounded ? factor * factor : factor;
     if (radius * (farthest - 1.0) <= chord_error) return sides;
   }
   std::ostringstream reason;
@@ -68,29 +67,30 @@ int sides_for(double radius, SpecificationKind kind, double chord_error,
   throw Error(subject, reason.str());
 }
 
-// The outline from the top down to the bottom, x the radius of the circle at height y.
-using Specification = std::vector<Vector2d>;
+// The profile curve of a solid of revolution, from the top down to the bottom: x is the radius of
+// the circle at height y.
+using Profile = std::vector<Vector2d>;
 
 // Tangents of a half circle, at equal angles, the first and last level; the halves are `length`
 // apart. There are as many tangents to the half circle as sides to half a ring.
-Specification rounded_outline(double radius, double length, int sides) {
+Profile rounded_profile(double radius, double length, int sides) {
   const std::vector<Vector2d> circle = directions(2 * sides);
   const double corner = radius * corner_factor(sides);
-  Specification specification;
+  Profile profile;
   for (int k = 1; k < sides; k += 2) {
     const Vector2d& direction = circle[static_cast<std::size_t>(k)];  // x up, y to the side
     const double shift = k < sides / 2 ? length / 2 : -length / 2;
-    specification.push_back({corner * direction.y(), corner * direction.x() + shift});
+    profile.push_back({corner * direction.y(), corner * direction.x() + shift});
   }
-  return specification;
+  return profile;
 }
 
-TriangleMesh turn(const Specification& specification, int sides) {
+TriangleMesh revolve(const Profile& profile, int sides) {
   const std::vector<Vector2d> circle = directions(sides);
   const double factor = corner_factor(sides);
-  const int rings = static_cast<int>(specification.size());
+  const int rings = static_cast<int>(profile.size());
   TriangleMesh mesh;
-  for (const Vector2d& point : specification) {
+  for (const Vector2d& point : profile) {
     for (const Vector2d& direction : circle) {
       const Vector2d corner = point.x() * factor * direction;
       mesh.vertices.push_back({corner.x(), corner.y(), point.y()});
@@ -98,8 +98,8 @@ TriangleMesh turn(const Specification& specification, int sides) {
   }
   const int top = rings * sides;
   const int bottom = top + 1;
-  mesh.vertices.push_back({0, 0, specification.front().y()});
-  mesh.vertices.push_back({0, 0, specification.back().y()});
+  mesh.vertices.push_back({0, 0, profile.front().y()});
+  mesh.vertices.push_back({0, 0, profile.back().y()});
   for (int i = 0; i < sides; ++i) {
     const int next = (i + 1) % sides;
     mesh.triangles.push_back({top, i, next});
@@ -138,18 +138,17 @@ struct MeshAround {
     return rounded(capsule.radius, capsule.length);
   }
   TriangleMesh operator()(const Cylinder& cylinder) const {
-    const int sides =
-        sides_for(cylinder.radius, SpecificationKind::kStraight, chord_error, subject);
-    return turn({{cylinder.radius, cylinder.length / 2}, {cylinder.radius, -cylinder.length / 2}},
-                sides);
+    const int sides = sides_for(cylinder.radius, ProfileKind::kStraight, chord_error, subject);
+    return revolve(
+        {{cylinder.radius, cylinder.length / 2}, {cylinder.radius, -cylinder.length / 2}}, sides);
   }
   TriangleMesh operator()(const HalfSpace&) const {
     throw Error(subject, "a half-space has no end and cannot be covered");
   }
 
   TriangleMesh rounded(double radius, double length) const {
-    const int sides = sides_for(radius, SpecificationKind::kRounded, chord_error, subject);
-    return turn(rounded_outline(radius, length, sides), sides);
+    const int sides = sides_for(radius, ProfileKind::kRounded, chord_error, subject);
+    return revolve(rounded_profile(radius, length, sides), sides);
   }
 };
 

@@ -194,7 +194,8 @@ TEST(OmplMotions, BeyondTheBoundsTheyAreStillThoseOfTheSpace) {
   EXPECT_FALSE(planning.motions->checkMotion(turned.get(), end.get()));
 }
 
-// Of real numbers it goes straight, whatever is requested, because that is how the space moves.
+// Of real numbers it goes straight, whatever ContinuousMotion says, because that is how the space
+// moves.
 TEST(OmplMotions, RealNumbersGoStraight) {
   const Planning planning(false, {.continuous = ContinuousMotion::kShortest}, 4.0);
   const auto behind = planning.state({3.0, 0.0, 0.0}), beyond = planning.state({-3.0, 0.0, 0.0});
