@@ -6,11 +6,10 @@
 #include "simplifier/concave_edges.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/solid/box_cell.h"
-#include "simplifier/solid/sphere_hierarchy.h"
+#include "simplifier/stage1/concave_fit_spheres.h"
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/random_placement.h"
-#include "simplifier/stage1/sphere_way.h"
 #include "simplifier/stage1/too_many_cells.h"
 #include "simplifier/support/parallel.h"
 #include "simplifier/support/thread_limit.h"
@@ -22,7 +21,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace spherule {
@@ -125,107 +123,6 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   return shape;
 }
 
-// Makes external spheres sit close to concave edges, corners and ends of ways, which the grid
-// reaches only by chance: points of a cell beside a reached node are pushed away from the surface
-// until a sphere of radius rho has room, and the sphere is kept if it takes something from S there,
-// that is, in the direction from which it was pushed, and provably gets there from the node.
-class SnugSpheres {
- public:
-  SnugSpheres(const MeshDistance& distance, double padding, const LocalDiameter& diameter,
-              std::span<const Sphere> reached)
-      : distance_(distance),
-        padding_(padding),
-        way_(distance, padding),
-        diameter_(diameter),
-        reached_(reached) {}
-
-  std::vector<Sphere> operator()(const FloodGrid::Frontier& frontier) const {
-    std::vector<Sphere> found;
-    const Sphere& node = frontier.neighbour;
-    const double to_surface = node.radius + padding_ + (frontier.center - node.center).norm();
-    sample(frontier, frontier.center, to_surface, 0.5 * frontier.step, found);
-    return found;
-  }
-
- private:
-  // What came of a point.
-  struct Pushed {
-    Sphere sphere;            // of radius 0 where nothing is to be had
-    bool is_flat = true;      // one surface only was met, if any
-    double to_surface = 0.0;  // upper bound of the distance from the point, up to rounding
-  };
-
-  // From a point, and, unless only a wall is there that the grid does as well for, from eight
-  // around it, and around those that find a sphere. The surface is at most `to_surface` away.
-  void sample(const FloodGrid::Frontier& frontier, const Vector3d& start, double to_surface,
-              double apart, std::vector<Sphere>& found) const {
-    const Pushed here = pushed(frontier, start, to_surface, found);
-    const bool is_found = here.sphere.radius > 0.0;
-    if (is_found) found.push_back(here.sphere);
-    const bool is_first = apart == 0.5 * frontier.step;
-    if (!(is_found || (is_first && !here.is_flat)) || apart < kFinest * frontier.step) return;
-    for (int k = 0; k < 8; ++k) {
-      const Vector3d aside((k & 1) != 0 ? apart : -apart, (k & 2) != 0 ? apart : -apart,
-                           (k & 4) != 0 ? apart : -apart);
-      sample(frontier, start + aside, here.to_surface + aside.norm(), 0.5 * apart, found);
-    }
-  }
-
-  Pushed pushed(const FloodGrid::Frontier& frontier, const Vector3d& start, double to_surface,
-                std::span<const Sphere> found) const {
-    constexpr int kMaxPushes = 6;
-    const Vector3d& from = frontier.neighbour.center;
-    const double rho = diameter_.on_way(frontier.center, from);
-    const double wanted = rho + 0.02 * frontier.step;
-    Vector3d x = start;
-    Pushed result;
-    for (int push = 0; push <= kMaxPushes; ++push) {
-      const SurfaceDistance d = distance_(x, to_surface * internal::SphereWay::kLimitUp);
-      if (push == 0) result.to_surface = d.upper;
-      const double clearance = sub_down(d.lower, padding_);
-      if (clearance >= rho) {
-        const Sphere sphere{x, clearance};
-        const Sphere& node = frontier.neighbour;
-        const bool reached = push > 0 &&
-                             takes_something(sphere, start, frontier.step, node, found) &&
-                             diameter_.on_way(from, x) <= rho && way_.passes(node, sphere, rho);
-        if (reached) result.sphere = sphere;
-        result.is_flat = push < 2;
-        break;
-      }
-      const Vector3d away = x - d.closest;
-      const double norm = away.norm();
-      if (d.triangle < 0 || !(norm > 0.0)) break;
-      x += away * ((wanted - clearance) / norm);
-      to_surface = d.upper + (wanted - clearance);
-      if ((x - start).norm() > 2.0 * frontier.step) break;
-    }
-    return result;
-  }
-
-  // Whether the point of the sphere towards `start` is this far from all others.
-  bool takes_something(const Sphere& sphere, const Vector3d& start, double step, const Sphere& node,
-                       std::span<const Sphere> found) const {
-    const double enough = kGain * step;
-    const Vector3d tip = sphere.center + sphere.radius * (start - sphere.center).normalized();
-    const auto holds = [&](const Sphere& other) {
-      return (tip - other.center).norm() - other.radius < enough;
-    };
-    if (holds(node) || std::ranges::any_of(found, holds)) return false;
-    return !(reached_.nearest(tip, enough, enough).upper < enough);
-  }
-
-  // Of the step.
-  static constexpr double kGain = 0.06;
-  static constexpr double kFinest = 0.2;
-
-  const MeshDistance& distance_;
-  double padding_;
-  internal::SphereWay way_;
-  const LocalDiameter& diameter_;
-  internal::SphereHierarchy reached_;
-};
-
 void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, const Steps& steps,
                      std::size_t grid_cells, ExternalSpheres& result) {
   const ExternalOptions& options = *steps.options;
@@ -263,10 +160,10 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
   // Zones make the grid so fine that it pays to leave out what lies in a larger sphere.
   result.spheres = zones.empty() ? grid.reached_spheres() : grid.reached_spheres_that_count();
   const std::vector<FloodGrid::Frontier> frontier = grid.frontier();
-  std::vector<std::vector<Sphere>> snug(frontier.size());
-  const SnugSpheres place(distance, result.padding, diameter, result.spheres);
-  internal::parallel_for(0, frontier.size(), [&](std::size_t i) { snug[i] = place(frontier[i]); });
-  for (const std::vector<Sphere>& spheres : snug) {
+  std::vector<std::vector<Sphere>> fitted(frontier.size());
+  const internal::ConcaveFitSpheres fit(distance, result.padding, diameter, result.spheres);
+  internal::parallel_for(0, frontier.size(), [&](std::size_t i) { fitted[i] = fit(frontier[i]); });
+  for (const std::vector<Sphere>& spheres : fitted) {
     result.spheres.insert(result.spheres.end(), spheres.begin(), spheres.end());
   }
   if (options.progress) options.progress(1.0, "placing external spheres");
@@ -277,7 +174,6 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
 void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
                      const ExternalOptions& options, std::size_t most_grid_cells,
                      ExternalSpheres& result) {
-  constexpr double kMargin = 1.1;  // of the steps
   const bool is_chosen = options.grid_step == 0.0;
   // With zones, cells are counted only as they are made.
   const bool is_foreseen = options.zones.empty() && !options.keep_concave_edges;
@@ -289,7 +185,7 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance,
       return place_reachable(mesh, distance, steps, grid_cells, result);
     } catch (const internal::TooManyCells& too_many) {
       if (is_chosen && steps.coarsening < Steps::kCoarsest) {
-        const double needed = kMargin * std::sqrt(too_many.factor()) * steps.coarsening;
+        const double needed = too_many.coarsening() * steps.coarsening;
         steps.coarsening = is_foreseen ? std::min(Steps::kCoarsest, needed) : Steps::kCoarsest;
       } else if (grid_cells < most) {
         grid_cells = most;
@@ -346,7 +242,6 @@ ExternalSpheres internal::place_external_spheres(const TriangleMesh& mesh,
 ExternalSpheres internal::place_with_default_diameter(const TriangleMesh& mesh,
                                                       const MeshDistance& distance,
                                                       const ExternalOptions& options) {
-  constexpr double kMargin = 1.1;
   constexpr double kLargest = 0.1;  // of the diagonal of the box
   // So that the steps are those of the same D where it is requested: an audit finds the same S.
   static_assert(ExternalOptions::kManyCells <= ExternalOptions::kMostCells / 4);
@@ -357,7 +252,7 @@ ExternalSpheres internal::place_with_default_diameter(const TriangleMesh& mesh,
     try {
       return place_external_spheres(mesh, distance, chosen, options.max_cells / 4);
     } catch (const TooManyCells& too_many) {
-      chosen.min_external_diameter *= kMargin * std::sqrt(too_many.factor());
+      chosen.min_external_diameter *= too_many.coarsening();
     }
   }
   return place_external_spheres(mesh, distance, options);

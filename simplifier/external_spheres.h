@@ -102,10 +102,10 @@ struct ExternalSpheres {
   // sphere of `spheres` that was reached. So a gap may be wider than D by no more than that and
   // have been closed. It is the centre that is proved to be out of S, not all of the sphere of
   // diameter D + closing_slack about it: S may reach into its rim. External spheres are added where
-  // it does, close to concave edges, corners and ends of ways, so that in samples on three models S
-  // reaches into it by a third of a grid step at most (bench/README.md); that is no proof. For the
-  // d of a zone the same share of d holds. At most `tightness` of D, unless memory ends first. 0
-  // for the other placements, of which nothing is proved.
+  // it does, close to concave edges, corners and ends of passages, so that in samples on three
+  // models S reaches into it by a third of a grid step at most (bench/README.md); that is no proof.
+  // For the d of a zone the same share of d holds. At most `tightness` of D, unless memory ends
+  // first. 0 for the other placements, of which nothing is proved.
   double closing_slack = 0.0;
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;

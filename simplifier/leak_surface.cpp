@@ -24,7 +24,7 @@ using internal::SurfacePiece;
 // nearly linear: it is interpolated.
 constexpr double kCoarse = 6.0;
 // How far the depth may be from linear, in spacings.
-constexpr double kBend = 0.25;
+constexpr double kNonlinearity = 0.25;
 // No point of a triangle is further from the nearest corner than this share of its longest edge
 // (1 / sqrt(3), where all edges are equal). A distance changes by no more than one moves.
 constexpr double kReach = 0.578;
@@ -67,7 +67,7 @@ class LeakCollector {
     const auto& [a, b, c] = piece.corner;
     const auto is_near = [&](const Vector3d& point, double depth) {
       const double exact = depth_at(point);
-      return exact > 0.0 && std::abs(exact - depth) <= kBend * spacing_;
+      return exact > 0.0 && std::abs(exact - depth) <= kNonlinearity * spacing_;
     };
     return is_near((a + b + c) / 3.0, (depths[0] + depths[1] + depths[2]) / 3.0) &&
            is_near((a + b) / 2.0, (depths[0] + depths[1]) / 2.0) &&

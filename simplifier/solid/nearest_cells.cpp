@@ -35,7 +35,7 @@ struct Seen {
   double distance;
   double gap;
   Vector3d direction;  // a subgradient of the distance
-  double bend;         // at most so much more than by the subgradient does it grow within the cell
+  double excess;       // at most so much more than by the subgradient does it grow within the cell
 
   Seen(const BoxCell& cell, double reach, std::int32_t i, const Sphere& sphere)
       : index(i),
@@ -44,14 +44,14 @@ struct Seen {
         distance(from_center.norm()),
         gap(distance - radius),
         direction(distance > kLeastNorm ? Vector3d(from_center / distance) : Vector3d::Zero()),
-        bend(std::min(2.0 * reach, 0.5 * reach * reach / distance)) {}
+        excess(std::min(2.0 * reach, 0.5 * reach * reach / distance)) {}
 };
 
 // At c + x, let s be the sum of the distances to the centres of two spheres, k the first radius
 // less the second, and f the first gap less the second. The difference of the squared distances is
 // linear in x, and f s = that difference - k s. The distances are convex and so at least what their
-// subgradients at c say; and at most that and the bend, as sqrt(1 + t) <= 1 + t / 2. Hence f s is
-// at least its value at c, plus slope x, less, if k > 0, k times the bends.
+// subgradients at c say; and at most that and the excess, as sqrt(1 + t) <= 1 + t / 2. Hence f s is
+// at least its value at c, plus slope x, less, if k > 0, k times the sum of the excesses.
 Vector3d slope_between(const Seen& one, const Seen& other) {
   return 2.0 * (one.from_center - other.from_center) -
          (one.radius - other.radius) * (one.direction + other.direction);
@@ -64,8 +64,8 @@ Vector3d slope_between(const Seen& one, const Seen& other) {
 bool is_beaten(const Seen& one, const Seen& other, const Vector3d& slope, const BoxCell& cell,
                double slack) {
   const double at_middle = (one.distance + other.distance) * (one.gap - other.gap);
-  const double bends = std::max(0.0, one.radius - other.radius) * (one.bend + other.bend);
-  return at_middle - bends - slope.cwiseAbs().dot(cell.half) > slack;
+  const double excess = std::max(0.0, one.radius - other.radius) * (one.excess + other.excess);
+  return at_middle - excess - slope.cwiseAbs().dot(cell.half) > slack;
 }
 
 // The number of the corner in the direction in which the components are negative.
@@ -219,7 +219,7 @@ void NearestCells::fill(Cell& cell, const Cell* parent) const {
     return cell.listed;
   };
   if (parent == nullptr || !parent->listed) {
-    hierarchy_.for_each_below(cell.box, first.gap + first.bend + rounding, first.direction,
+    hierarchy_.for_each_below(cell.box, first.gap + first.excess + rounding, first.direction,
                               consider);
   } else {
     for (const std::int32_t i : parent->list) consider(i);

@@ -32,7 +32,7 @@ FloodGrid::FloodGrid(const MeshDistance& distance, double padding, const LocalDi
                      const Shape& shape, const Progress& progress)
     : distance_(distance),
       padding_(padding),
-      way_(distance, padding),
+      displacement_(distance, padding),
       diameter_(diameter),
       shape_(shape),
       levels_(shape.levels + diameter.most_halvings()) {
@@ -212,8 +212,8 @@ FloodGrid::OwnSphere FloodGrid::own_sphere(const Entry& cell) const {
                         .step = step,
                         .surface_at_most = cell.clearance + padding_ + widest_bounds_};
   const std::optional<SphereOfPlaces> wanted = wanted_sphere(distance_, padding_, place);
-  // A sphere that needs more room on its way to the cell than in it might not get there.
-  if (!wanted || diameter_.on_way(wanted->sphere.center, middle) > rho.least) return {};
+  // A sphere that needs more room on its path to the cell than in it might not get there.
+  if (!wanted || diameter_.on_segment(wanted->sphere.center, middle) > rho.least) return {};
   const std::optional<std::uint32_t> around = free_cell_around(cell.level, wanted->sphere);
   if (!around) return {};
   const std::optional<Sphere> sphere = sphere_of_places(distance_, padding_, place, *wanted);
@@ -285,7 +285,7 @@ double FloodGrid::needed_between(const Entry& a, const Entry& b) const {
     return diameter_.radius();
   }
   if (a.index == b.index) return diameter_.radius_of(a.index);
-  return diameter_.on_way(center(a), center(b));
+  return diameter_.on_segment(center(a), center(b));
 }
 
 bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& face) const {
@@ -293,37 +293,37 @@ bool FloodGrid::passes(const Entry& a, const Entry& b, const Eigen::Vector3d& fa
     return passes_between_centers(a, b, 0);
   }
   if (!a.finest && !b.finest) return true;
-  const auto suffices = [](double sum, double way, double rho) {
-    return sub_down(sum, way) >= 2.0 * rho * kRelativeUp;
+  const auto suffices = [](double sum, double length, double rho) {
+    return sub_down(sum, length) >= 2.0 * rho * kRelativeUp;
   };
   const Eigen::Vector3d from = center(a);
   const Eigen::Vector3d to = center(b);
   if (a.finest && b.finest) {
-    const double way =
+    const double length =
         a.level == b.level ? edge(a.level) * (1.0 + 1e-9) + rounding() : distance_upper(from, to);
     const double sum = a.clearance + b.clearance;
-    return suffices(sum, way, diameter_.radius()) ||
-           (suffices(sum, way, diameter_.least_radius()) &&
-            suffices(sum, way, needed_between(a, b)));
+    return suffices(sum, length, diameter_.radius()) ||
+           (suffices(sum, length, diameter_.least_radius()) &&
+            suffices(sum, length, needed_between(a, b)));
   }
   const Entry& node = a.finest ? a : b;
   const Entry& coarse = a.finest ? b : a;
   const Eigen::Vector3d& start = a.finest ? from : to;
   const Eigen::Vector3d& end = a.finest ? to : from;
-  const double way = add_up(distance_upper(start, face), rounding());
+  const double length = add_up(distance_upper(start, face), rounding());
   const double at_face = sub_down(coarse.clearance, add_up(distance_upper(face, end), rounding()));
   const auto has_room = [&](double rho) {
-    return suffices(node.clearance + at_face, way, rho) ||
-           sub_down(node.clearance, way) >= rho * kRelativeUp;
+    return suffices(node.clearance + at_face, length, rho) ||
+           sub_down(node.clearance, length) >= rho * kRelativeUp;
   };
   return has_room(diameter_.radius()) ||
-         (has_room(diameter_.least_radius()) && has_room(diameter_.on_way(start, face)));
+         (has_room(diameter_.least_radius()) && has_room(diameter_.on_segment(start, face)));
 }
 
 bool FloodGrid::passes_between_centers(const Entry& a, const Entry& b, int bisections) const {
   const Sphere from = sphere_of(a);
   const Sphere to = sphere_of(b);
-  return way_.passes(from, to, diameter_.on_way(from.center, to.center), bisections);
+  return displacement_.is_free(from, to, diameter_.on_segment(from.center, to.center), bisections);
 }
 
 void FloodGrid::connect(std::size_t cell) {
@@ -362,7 +362,7 @@ void FloodGrid::reach_on() {
     passes.assign(tried.size(), 0);
     parallel_for(0, tried.size(), [&](std::size_t i) {
       passes[i] = passes_between_centers(cells_[tried[i].first], cells_[tried[i].second],
-                                         SphereWay::kMostBisections)
+                                         SphereDisplacement::kMostBisections)
                       ? 1
                       : 0;
     });

@@ -5,7 +5,7 @@
 #include "mesh/shells/disjoint_sets.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/stage1/local_diameter.h"
-#include "simplifier/stage1/sphere_way.h"
+#include "simplifier/stage1/sphere_displacement.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
@@ -58,12 +58,13 @@ class FloodGrid {
             const Shape& shape, const Progress& progress);
 
   // Marks the cells that the sphere reaches from outside the cube. A step between two nodes counts
-  // only if the sphere provably passes on the straight way, whose length is h: (d1 + d2 - h) / 2 >=
-  // rho, the greatest on that way; or, where that makes a difference, by bisection (sphere_way.h).
-  // A step between two coarse free cells always passes, through their common face. So does one
-  // between a node and a coarse free cell where rho is the same: on the way of h / 2 to the common
-  // face the clearance is at least (d1 + rho + 1.2 h - h / 2) / 2 >= rho. Where zones make a
-  // difference, that way is examined.
+  // only if the sphere provably passes along the segment between their centres, whose length is h:
+  // (d1 + d2 - h) / 2 >= rho, the greatest on that segment; or, where that makes a difference, by
+  // bisection (sphere_displacement.h). A step between two coarse free cells always passes, through
+  // their common face. So does one between a node and a coarse free cell where rho is the same: on
+  // the segment of h / 2 to the common face the clearance is at least (d1 + rho + 1.2 h - h / 2) /
+  // 2
+  // >= rho. Where zones make a difference, that segment is examined.
   void flood();
 
   // After flood(): halves cells where a sphere that is larger by a share might get to places that
@@ -71,7 +72,7 @@ class FloodGrid {
   // for which this holds, `share` unless memory is short: wherever a sphere of radius (1 + s) rho
   // can be moved from outside the cube, its centre lies in a reached cell, or in the sphere of a
   // reached cell that touches its own. The proof is in flood_refinement.cpp. None if cells with own
-  // spheres are in the way of a proof for any s that holds without them.
+  // spheres prevent a proof for any s that holds without them.
   std::optional<double> tighten(double share, const Progress& progress);
 
   // After flood(): a sphere for each reached cell, its own or about its centre. Order: from coarse
@@ -174,7 +175,7 @@ class FloodGrid {
   // Whether the sphere of a reached node lies in that of a reached neighbour, of its size or
   // coarser.
   bool lies_in_neighbour(const Entry& node) const;
-  // The same answer as from LocalDiameter::on_way(), between the centres of two nodes.
+  // The same answer as from LocalDiameter::on_segment(), between the centres of two nodes.
   double needed_between(const Entry& a, const Entry& b) const;
   // Whether the sphere provably passes between two open cells that share a face; `face` is the
   // centre of that.
@@ -202,7 +203,7 @@ class FloodGrid {
 
   const MeshDistance& distance_;
   double padding_;
-  SphereWay way_;
+  SphereDisplacement displacement_;
   const LocalDiameter& diameter_;
   Shape shape_;
   std::array<double, kMostLevels + 1> edges_{};  // of the cells of each level

@@ -8,9 +8,9 @@
 // its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked, or that
 // blocked ones separate from the outside, is not. The places of a leaf with a sphere of its own lie
 // in that sphere (sphere_of_places.h), so that none is on a face of it which the sphere does not
-// meet, or, of two such leaves, on their common face if their spheres do not intersect. The way of
+// meet, or, of two such leaves, on their common face if their spheres do not intersect. The path of
 // the centre to a place of R passes possible leaves alone. Points of clearance above (1
-// - 1e-9) T form an open set, in which the way can be moved off edges and corners, so that it
+// - 1e-9) T form an open set, in which the path can be moved off edges and corners, so that it
 // passes from leaf to leaf through faces. So each leaf that intersects R belongs to the possible
 // leaves that are connected with the outside through faces of possible or reached leaves: *open*
 // leaves. Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that
@@ -22,7 +22,7 @@
 // Where it is not so, those of the open leaves that are left and lie at the front of what is
 // reached are halved, with the possible leaves around them in two rings, so that what is reached
 // beside them can be followed. Between open leaves of edge h that share a face the clearance on the
-// straight way of their centres is at least T - 1.37 h: they are free and passed once 1.37 h is
+// segment between their centres is at least T - 1.37 h: they are free and passed once 1.37 h is
 // less than s rho. A leaf with a sphere of its own that is not reached is halved like them, until
 // its cells are finest. Should halving end before (by memory, or the resolution of coordinates), a
 // larger s is stated for which no open leaf is left, at most that of a grid as it is that has no
@@ -320,7 +320,7 @@ std::optional<double> FloodGrid::tighten(double share, const Progress& progress)
   refinement.begin(share);
   bool is_proved = refinement.lost().empty();
   while (!is_proved && !is_as_it_is) {
-    if (progress) progress(0.95, "searching for narrow ways");
+    if (progress) progress(0.95, "searching for narrow passages");
     if (!refinement.refine()) break;
     is_proved = refinement.lost().empty();
   }

@@ -14,7 +14,7 @@ namespace spherule::internal {
 
 // D as a function of place, as radii, and the grid steps that follow it. At a point x a sphere of
 // radius rho(x) has to have room: D / 2, or d / 2 in a zone of its own d, the least of them where
-// zones overlap. Zones are closed and convex, so a straight way between two points of one zone
+// zones overlap. Zones are closed and convex, so the segment between two points of one zone
 // needs no more than that zone requires.
 class LocalDiameter {
  public:
@@ -39,10 +39,10 @@ class LocalDiameter {
 
   // Never less than rho at the point (rounding may take it for a point beside a zone).
   Needed at(const Eigen::Vector3d& point) const { return needed(point, point); }
-  // Never less than rho at any point of the straight way: of the zones that hold both ends, the
+  // Never less than rho at any point of the segment: of the zones that hold both ends, the
   // least that one requires. It is at least what at() says of either end, and just that if both
   // ends need it by the same zone, or one of them by none.
-  double on_way(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  double on_segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
     return needed(from, to).radius;
   }
   // Of all points within `reach` of the center: never more than the least rho, and never less than

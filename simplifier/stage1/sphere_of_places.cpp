@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/sphere_of_places.h"
 
-#include "simplifier/stage1/sphere_way.h"
+#include "simplifier/stage1/sphere_displacement.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ bool is_held(const BoxCell& cell, const Sphere& ball, const Vector3d& q, double 
 std::optional<SphereOfPlaces> wanted_sphere(const MeshDistance& distance, double padding,
                                             const PlaceCell& cell) {
   const SurfaceDistance nearest =
-      distance(cell.box.center, cell.surface_at_most * SphereWay::kLimitUp, kMostLeaves);
+      distance(cell.box.center, cell.surface_at_most * SphereDisplacement::kLimitUp, kMostLeaves);
   const Vector3d away = cell.box.center - nearest.closest;
   const double height = away.norm();
   if (nearest.triangle < 0 || !(height > 0.0)) return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<SphereOfPlaces> wanted_sphere(const MeshDistance& distance, double
 std::optional<Sphere> sphere_of_places(const MeshDistance& distance, double padding,
                                        const PlaceCell& cell, const SphereOfPlaces& wanted) {
   Sphere ball = wanted.sphere;
-  const double limit = (ball.radius + padding) * SphereWay::kLimitUp;
+  const double limit = (ball.radius + padding) * SphereDisplacement::kLimitUp;
   ball.radius = sub_down(distance(ball.center, limit, kMostLeaves).lower, padding);
   if (ball.radius < wanted.sphere.radius - scallop(cell)) return std::nullopt;
 

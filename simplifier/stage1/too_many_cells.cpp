@@ -13,6 +13,7 @@ namespace {
 
 // What is advised has some room.
 constexpr double kMargin = 1.2;
+constexpr double kEdgeMargin = 1.1;
 
 std::string too_many(double count, double edge, double most) {
   const double larger = kMargin * count / most;
@@ -34,6 +35,6 @@ std::string too_many(double count, double edge, double most) {
 TooManyCells::TooManyCells(double most_foreseen, double least_foreseen, double edge,
                            std::size_t max_cells)
     : Error("grid step", too_many(most_foreseen, edge, static_cast<double>(max_cells))),
-      factor_(least_foreseen / static_cast<double>(max_cells)) {}
+      coarsening_(kEdgeMargin * std::sqrt(least_foreseen / static_cast<double>(max_cells))) {}
 
 }  // namespace spherule::internal

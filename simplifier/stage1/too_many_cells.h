@@ -13,11 +13,12 @@ class TooManyCells : public Error {
   // So many cells, of this edge the finest, are foreseen, the least if most large ones need not be
   // halved. The reason says what to choose so that memory suffices for the most.
   TooManyCells(double most_foreseen, double least_foreseen, double edge, std::size_t max_cells);
-  // The least number over the number allowed: above 1.
-  double factor() const { return factor_; }
+  // How many times longer the edges of the cells have to be, with a margin: above 1. The least
+  // number goes with the area of the surface over their square.
+  double coarsening() const { return coarsening_; }
 
  private:
-  double factor_;
+  double coarsening_;
 };
 
 }  // namespace spherule::internal

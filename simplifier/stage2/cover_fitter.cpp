@@ -154,12 +154,12 @@ void CoverFitter::begin(Spheres proved) {
   };
   divided();
   announce("covering: searching for places of spheres");
-  pose(proved.places);
+  build_problem(proved.places);
   first_entries_ = problem_.entries();
   if (!proved.spheres.empty()) {
     best_ = std::move(proved);
     goal_.reached(best_.spheres.size());
-    set_out();
+    start_from_best();
     return;
   }
   solution_ = greedy_set_cover(problem_.instance());
@@ -185,22 +185,22 @@ bool CoverFitter::refine() {
   const std::vector<CoverProblem::Row> rows = problem_.rows();
   const std::size_t learned = sampled_;
   divide();
-  pose(best_.places);
+  build_problem(best_.places);
   problem_.add_rows(std::span(rows).subspan(learned));
   add_own(problem_, sampled_);
   know_from(sampled_);
   first_entries_ = problem_.entries();
-  set_out();
+  start_from_best();
   return true;
 }
 
-void CoverFitter::set_out() {
+void CoverFitter::start_from_best() {
   solution_.resize(best_.places.size());
   std::iota(solution_.begin(), solution_.end(), std::size_t{0});
   goal_.restart();
 }
 
-void CoverFitter::pose(const std::vector<Candidate>& candidates) {
+void CoverFitter::build_problem(const std::vector<Candidate>& candidates) {
   problem_ = CoverProblem(error_, options_.min_radius, options_.zones);
   problem_.add_candidates(candidates);
   cells_made_ = cells_->size();

@@ -70,16 +70,16 @@ class CoverFitter {
   // The first proved answer: the spheres `proved`, or new ones.
   void begin(Spheres proved);
   // Has the search begin with the best spheres, which are the first candidates of the problem.
-  void set_out();
+  void start_from_best();
   // One round; true if fewer spheres were proved.
   bool improve();
-  // Sets out again with cells and rows of the next finer spacing, if that is not too fine; what was
-  // proved and learned stays.
+  // Starts again from the best spheres with cells and rows of the next finer spacing, if that is
+  // not too fine; what was proved and learned stays.
   bool refine();
   // Makes the cells of the present spacing.
   void divide();
   // Makes a problem of the cells' rows and the `candidates`.
-  void pose(const std::vector<Candidate>& candidates);
+  void build_problem(const std::vector<Candidate>& candidates);
   // Searches for columns that cover all rows, for the target and for an easier one side by side;
   // true if it finds any. What it found, or came to for the easier one, is left in solution_.
   bool search();

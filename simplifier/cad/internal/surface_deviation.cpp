@@ -165,9 +165,9 @@ void SurfaceDeviation::cover(const Target& target, Piece piece, double extra, in
   constexpr int kMaxDepth = 14;
   constexpr std::size_t kMaxSteps = 300'000;
   const ParametricSurface& surface = target.face.surface;
-  const double bend = deviation_from_linear(surface, piece.parameters) + extra;
+  const double nonlinearity = deviation_from_linear(surface, piece.parameters) + extra;
   const auto value_for = [&](std::size_t triangle) {
-    return kRelative * (farthest(piece.points, corners_of(target.face, triangle)) + bend);
+    return kRelative * (farthest(piece.points, corners_of(target.face, triangle)) + nonlinearity);
   };
   double value = value_for(piece.triangle);
   if (is_done(value)) {

@@ -29,11 +29,12 @@ constexpr std::size_t kPart = 8;  // tasks in sequence
 // Far above the rounding of sums of weights, below what matters.
 constexpr double kRounding = 1e-9;
 
-// D(q + d) <= value + slope.d + bend for every d no longer than the half diagonal of the cell at q.
+// D(q + d) <= value + slope.d + excess for every d no longer than the half diagonal of the cell at
+// q.
 struct Slope {
   double value;
   Vector3d slope;
-  double bend;
+  double excess;
 };
 
 }  // namespace
@@ -86,7 +87,7 @@ class HeaviestSpheres::Descent {
     slopes[1] = slope_at(there, ahead, reach);
     slopes[2] = {(slopes[0].value + slopes[1].value) / 2.0,
                  (slopes[0].slope + slopes[1].slope) / 2.0,
-                 (slopes[0].bend + slopes[1].bend) / 2.0};
+                 (slopes[0].excess + slopes[1].excess) / 2.0};
     if ((slopes[1].slope - slopes[0].slope).squaredNorm() > 0.01) {
       weight = weigh(cell, std::span(slopes).last(2), at.lower, reach, held);
       if (weight <= 1.0) return false;
@@ -101,8 +102,8 @@ class HeaviestSpheres::Descent {
   Slope slope_at(const ClearanceAt& at, const Vector3d& ahead, double reach) const {
     const double far = ahead.norm() + reach;
     const double to_center = of_.clearance_.least_external() + at.lower;
-    const double bend = to_center > 0.0 ? far * far / (2.0 * to_center) : 2.0 * far;
-    return {at.upper - at.away.dot(ahead), at.away, bend};
+    const double excess = to_center > 0.0 ? far * far / (2.0 * to_center) : 2.0 * far;
+    return {at.upper - at.away.dot(ahead), at.away, excess};
   }
 
   // The weight of what spheres with a centre c = q + d in the cell may hold. A point p is out if
@@ -120,7 +121,7 @@ class HeaviestSpheres::Descent {
         return true;
       }
       for (const Slope& s : slopes) {
-        const double beyond = distance - of_.error_ - of_.slack_ - s.value - s.bend;
+        const double beyond = distance - of_.error_ - of_.slack_ - s.value - s.excess;
         if (beyond <= 0.0) continue;
         if ((to_point / distance + s.slope).cwiseAbs().dot(cell.half) < beyond) return true;
       }
