@@ -49,10 +49,9 @@ Eigen::Array2d squared_distances(const Corners& low, const Corners& high, const 
 MeshDistance::MeshDistance(const TriangleMesh& mesh) {
   corners_.reserve(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Eigen::Vector3i& t = mesh.triangles[i];
-    const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    corners_.push_back({vertex(0), vertex(1), vertex(2), static_cast<std::int32_t>(i)});
-    for (int k = 0; k < 3; ++k) box_.extend(vertex(k));
+    const auto [a, b, c] = corners_of(mesh, mesh.triangles[i]);
+    corners_.push_back({a, b, c, static_cast<std::int32_t>(i)});
+    box_.extend(a).extend(b).extend(c);
   }
   nodes_.reserve(corners_.size() / kLeafSize);
   root_ = build(0, static_cast<std::int32_t>(corners_.size())).first;

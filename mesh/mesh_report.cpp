@@ -20,17 +20,14 @@ constexpr double kZeroArea = 1e-14;
 // A volume of this share of area times size is rounding.
 constexpr double kZeroVolume = 1e-12;
 
-const Eigen::Vector3d& corner(const TriangleMesh& mesh, const Eigen::Vector3i& t, int k) {
-  return mesh.vertices[static_cast<std::size_t>(t[k])];
-}
-
 bool has_repeated_corner(const Eigen::Vector3i& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
 bool is_degenerate(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
-  const Eigen::Vector3d e = corner(mesh, t, 1) - corner(mesh, t, 0);
-  const Eigen::Vector3d f = corner(mesh, t, 2) - corner(mesh, t, 0);
+  const auto [a, b, c] = corners_of(mesh, t);
+  const Eigen::Vector3d e = b - a;
+  const Eigen::Vector3d f = c - a;
   const double longest = std::max({e.squaredNorm(), f.squaredNorm(), (f - e).squaredNorm()});
   return e.cross(f).norm() <= kZeroArea * longest;
 }
@@ -131,9 +128,8 @@ MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& optio
   std::vector<Component> parts(mesh.vertices.size());
   const Eigen::Vector3d center = report.box.center();  // keeps the terms of the volume small
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    const Eigen::Vector3d a = corner(mesh, t, 0) - center;
-    const Eigen::Vector3d b = corner(mesh, t, 1) - center;
-    const Eigen::Vector3d c = corner(mesh, t, 2) - center;
+    auto [a, b, c] = corners_of(mesh, t);
+    for (Eigen::Vector3d* corner : {&a, &b, &c}) *corner -= center;
     Component& part = parts[components.find(static_cast<std::uint32_t>(t[0]))];
     part.used = true;
     part.area += 0.5 * (b - a).cross(c - a).norm();

@@ -11,10 +11,14 @@
 //                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 // spherule::validate(tetrahedron, "tetrahedron");  // throws Error if it cannot be used
 // assert(tetrahedron.triangles.size() == 4 && tetrahedron.vertex_error == 0.0);
+// const auto [a, b, c] = corners_of(tetrahedron, tetrahedron.triangles[0]);
+// assert(a.x() == 0.0 && b.y() == 1.0 && c.x() == 1.0);
 // @endcode
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -32,6 +36,15 @@ struct TriangleMesh {
   // it to the padding, so that its promises hold for what the file describes.
   double vertex_error = 0.0;
 };
+
+// The corners of a triangle, whose indices must be in range.
+inline std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh,
+                                                 const Eigen::Vector3i& triangle) {
+  const auto corner = [&](int k) -> const Eigen::Vector3d& {
+    return mesh.vertices[static_cast<std::size_t>(triangle[k])];
+  };
+  return {corner(0), corner(1), corner(2)};
+}
 
 // Throws Error(subject, ...) unless the mesh can be used at all: at least one triangle, indices in
 // range, coordinates finite and at most kMaxCoordinate, vertex_error finite and not negative. What

@@ -63,13 +63,11 @@ std::optional<double> concave_angle(const std::vector<Side>& sides) {
 
 // All sharp concave edges of a mesh over distinct vertices, sorted.
 std::vector<Edge> concave_edges(const TriangleMesh& mesh) {
-  const auto vertex = [&](const Eigen::Vector3i& t, int k) {
-    return mesh.vertices[static_cast<std::size_t>(t[k % 3])];
-  };
   double volume = 0.0;
-  const Vector3d origin = vertex(mesh.triangles.front(), 0);
+  const Vector3d origin = corners_of(mesh, mesh.triangles.front())[0];
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    volume += (vertex(t, 0) - origin).dot((vertex(t, 1) - origin).cross(vertex(t, 2) - origin));
+    const auto [a, b, c] = corners_of(mesh, t);
+    volume += (a - origin).dot((b - origin).cross(c - origin));
   }
   const double outwards = volume < 0.0 ? -1.0 : 1.0;
   std::map<std::pair<int, int>, std::vector<Side>> sides;
@@ -78,13 +76,15 @@ std::vector<Edge> concave_edges(const TriangleMesh& mesh) {
     std::array<int, 3> corners{t[0], t[1], t[2]};
     std::ranges::sort(corners);
     if (!seen.insert(corners).second) continue;
-    const Vector3d cross = (vertex(t, 1) - vertex(t, 0)).cross(vertex(t, 2) - vertex(t, 0));
+    const std::array<Vector3d, 3> corner = corners_of(mesh, t);
+    const Vector3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     if (!(cross.norm() > 0.0)) continue;
     const Vector3d normal = outwards * cross.normalized();
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d along = (vertex(t, k + 1) - vertex(t, k)).normalized();
-      const Vector3d third = vertex(t, k + 2) - vertex(t, k);
-      const int from = t[k], to = t[(k + 1) % 3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const Vector3d along = (corner[next] - corner[k]).normalized();
+      const Vector3d third = corner[(k + 2) % 3] - corner[k];
+      const int from = t[static_cast<int>(k)], to = t[static_cast<int>(next)];
       sides[std::minmax(from, to)].push_back(
           {(third - along * along.dot(third)).normalized(), normal, from < to});
     }

@@ -50,14 +50,14 @@ using Corner = std::array<double, 3>;
 std::vector<Edge> edges_of(const TriangleMesh& mesh) {
   std::map<std::pair<Corner, Corner>, Edge> edges;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const auto at = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i % 3])]; };
-      Vector3d a = at(k);
-      Vector3d b = at(k + 1);
+    const std::array<Vector3d, 3> corners = corners_of(mesh, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vector3d a = corners[k];
+      Vector3d b = corners[(k + 1) % 3];
       const auto key = [](const Vector3d& p) { return Corner{p.x(), p.y(), p.z()}; };
       if (key(b) < key(a)) std::swap(a, b);
       const Vector3d along = (b - a).normalized();
-      const Vector3d to_third = at(k + 2) - a;
+      const Vector3d to_third = corners[(k + 2) % 3] - a;
       const Vector3d inward = to_third - along * along.dot(to_third);
       // Nothing can be said of a triangle without area.
       if (!(inward.norm() > 1e-9 * to_third.norm())) continue;

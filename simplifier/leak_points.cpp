@@ -105,7 +105,7 @@ std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sph
   Sampler sampler(hierarchy, std::max(options.spacing * size,
                                       kLeastSpacing * internal::largest_coordinate(box)));
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    const SurfacePiece piece = internal::piece_of(mesh, triangle);
+    const SurfacePiece piece{corners_of(mesh, triangle)};
     for (const Vector3d& corner : piece.corner) sampler.add_point(corner);
     sampler.add_triangle(piece);
   }

@@ -127,7 +127,7 @@ LeakSurface leak_surface(const TriangleMesh& mesh, std::span<const Sphere> spher
   const SphereHierarchy hierarchy(spheres);
   LeakCollector collector(hierarchy, options.spacing * internal::box_of(mesh).diagonal().norm());
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    collector.add_triangle(internal::piece_of(mesh, triangle));
+    collector.add_triangle({corners_of(mesh, triangle)});
   }
   return collector.take();
 }

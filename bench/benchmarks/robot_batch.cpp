@@ -27,10 +27,7 @@ namespace {
 std::shared_ptr<const SphereTree> spheres_around(const TriangleMesh& mesh, double radius) {
   using Corners = std::array<Eigen::Vector3d, 3>;
   std::vector<Corners> open;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    open.push_back({corner(0), corner(1), corner(2)});
-  }
+  for (const Eigen::Vector3i& t : mesh.triangles) open.push_back(corners_of(mesh, t));
   std::vector<Sphere> spheres;
   while (!open.empty()) {
     Corners corners = open.back();

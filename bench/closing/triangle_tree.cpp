@@ -41,10 +41,7 @@ double squared_to_triangle(const Vector3d& p, const std::array<Vector3d, 3>& t) 
 }  // namespace
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    triangles_.push_back({corner(0), corner(1), corner(2)});
-  }
+  for (const Eigen::Vector3i& t : mesh.triangles) triangles_.push_back(corners_of(mesh, t));
   constexpr std::size_t kLeaf = 4;
   nodes_.push_back({.box = {}, .begin = 0, .end = triangles_.size()});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {

@@ -45,9 +45,7 @@ void draw(const PictureItem& item, std::ostringstream& out) {
   if (item.mesh.triangles.empty()) return;
   out << "mesh {\n";
   for (const Eigen::Vector3i& triangle : item.mesh.triangles) {
-    const Eigen::Vector3d& a = item.mesh.vertices[static_cast<std::size_t>(triangle[0])];
-    const Eigen::Vector3d& b = item.mesh.vertices[static_cast<std::size_t>(triangle[1])];
-    const Eigen::Vector3d& c = item.mesh.vertices[static_cast<std::size_t>(triangle[2])];
+    const auto [a, b, c] = corners_of(item.mesh, triangle);
     // POV-Ray warns of triangles without an area and leaves them out.
     if ((b - a).cross(c - a).isZero(0.0)) continue;
     out << "triangle { " << text(a) << ", " << text(b) << ", " << text(c) << " }\n";

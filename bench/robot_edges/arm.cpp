@@ -98,8 +98,7 @@ Arm make_arm(const std::filesystem::path& models, SpheresOf spheres_of) {
 std::vector<Sphere> spheres_around(const TriangleMesh& mesh, double radius) {
   std::vector<Sphere> spheres;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
-    add_spheres({corner(0), corner(1), corner(2)}, radius, spheres);
+    add_spheres(corners_of(mesh, t), radius, spheres);
   }
   return spheres;
 }

@@ -14,10 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-const Vector3d& corner(const TriangleMesh& mesh, const Vector3i& triangle, int i) {
-  return mesh.vertices[static_cast<std::size_t>(triangle[i])];
-}
-
 // Of every vertex, the first one of its component.
 std::vector<int> component_leaders(const TriangleMesh& mesh) {
   std::vector<int> root(mesh.vertices.size());
@@ -59,7 +55,8 @@ bool is_closed(const TriangleMesh& mesh) {
 double signed_volume(const TriangleMesh& mesh) {
   double six_volumes = 0.0;
   for (const Vector3i& t : mesh.triangles) {
-    six_volumes += corner(mesh, t, 0).dot(corner(mesh, t, 1).cross(corner(mesh, t, 2)));
+    const auto [a, b, c] = corners_of(mesh, t);
+    six_volumes += a.dot(b.cross(c));
   }
   return six_volumes / 6.0;
 }
@@ -108,9 +105,8 @@ std::vector<TriangleMesh> components(const TriangleMesh& mesh) {
 double winding_number(const TriangleMesh& mesh, const Vector3d& point) {
   double angle = 0.0;
   for (const Vector3i& t : mesh.triangles) {
-    const Vector3d a = corner(mesh, t, 0) - point;
-    const Vector3d b = corner(mesh, t, 1) - point;
-    const Vector3d c = corner(mesh, t, 2) - point;
+    auto [a, b, c] = corners_of(mesh, t);
+    for (Vector3d* corner : {&a, &b, &c}) *corner -= point;
     const double la = a.norm();
     const double lb = b.norm();
     const double lc = c.norm();

@@ -166,9 +166,7 @@ std::array<Group, 2> split(const Group& group) {
 double area(const TriangleMesh& mesh) {
   double sum = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    const Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
-    const Vector3d& b = mesh.vertices[static_cast<std::size_t>(t[1])];
-    const Vector3d& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+    const auto [a, b, c] = corners_of(mesh, t);
     sum += 0.5 * (b - a).cross(c - a).norm();
   }
   return sum;
@@ -182,12 +180,7 @@ std::vector<Sphere> refine_cover(const TriangleMesh& mesh, std::span<const Spher
   const double pieces = kPiecesPerSphere * static_cast<double>(count);
   Cutter cutter(cover, std::sqrt(2.0) * std::sqrt(2.0 * area(mesh) / pieces));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Eigen::Vector3i& t = mesh.triangles[i];
-    Piece triangle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle.corners[k] = mesh.vertices[static_cast<std::size_t>(t[static_cast<int>(k)])];
-    }
-    cutter.cut(triangle, "triangle " + std::to_string(i));
+    cutter.cut({corners_of(mesh, mesh.triangles[i])}, "triangle " + std::to_string(i));
   }
   std::vector<std::vector<Piece>> held = cutter.take();
   std::priority_queue<Group> groups;

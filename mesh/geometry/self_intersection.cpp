@@ -124,12 +124,7 @@ class BoxTree {
     for (int k = 0; k < 3; ++k) {
       if ((t.array() == s[k]).any()) return false;
     }
-    return triangles_meet(corners(s), corners(t));
-  }
-
-  Corners corners(const Eigen::Vector3i& t) const {
-    const auto at = [&](int k) { return mesh_.vertices[static_cast<std::size_t>(t[k])]; };
-    return {at(0), at(1), at(2)};
+    return triangles_meet(corners_of(mesh_, s), corners_of(mesh_, t));
   }
 
   const TriangleMesh& mesh_;

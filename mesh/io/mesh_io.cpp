@@ -79,9 +79,7 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path) {
   bytes.reserve(84 + 50 * mesh.triangles.size());
   append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    const Eigen::Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
-    const Eigen::Vector3d& b = mesh.vertices[static_cast<std::size_t>(t[1])];
-    const Eigen::Vector3d& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+    const auto [a, b, c] = corners_of(mesh, t);
     append(bytes, Eigen::Vector3f((b - a).cross(c - a).stableNormalized().cast<float>()));
     for (const Eigen::Vector3d* corner : {&a, &b, &c}) {
       append(bytes, Eigen::Vector3f(corner->cast<float>()));

@@ -34,18 +34,15 @@ void check(const ConvexDecompositionOptions& options) {
   if (options.min_parts < 1) throw Error("min parts", "must be positive");
 }
 
-const Vector3d& vertex(const TriangleMesh& mesh, const Eigen::Vector3i& triangle, int corner) {
-  return mesh.vertices[static_cast<std::size_t>(triangle[corner])];
-}
-
 // Triangles that HACD can take: with an area, and once each.
 std::vector<std::size_t> sound_triangles(const TriangleMesh& mesh) {
   std::vector<std::size_t> sound;
   std::set<std::array<int, 3>> seen;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Eigen::Vector3i& t = mesh.triangles[i];
-    const Vector3d ab = vertex(mesh, t, 1) - vertex(mesh, t, 0);
-    const Vector3d ac = vertex(mesh, t, 2) - vertex(mesh, t, 0);
+    const auto [a, b, c] = corners_of(mesh, t);
+    const Vector3d ab = b - a;
+    const Vector3d ac = c - a;
     std::array<int, 3> key = {t[0], t[1], t[2]};
     std::sort(key.begin(), key.end());
     if (!(ab.cross(ac).norm() > 1e-12 * ab.norm() * ac.norm()) || !seen.insert(key).second)
@@ -148,7 +145,9 @@ ConvexDecomposition decompose(const TriangleMesh& mesh, const ConvexDecompositio
 
   std::vector<std::vector<Vector3d>> points(*std::max_element(part.begin(), part.end()) + 1);
   for (std::size_t i = 0; i < part.size(); ++i) {
-    for (int k = 0; k < 3; ++k) points[part[i]].push_back(vertex(mesh, mesh.triangles[i], k));
+    for (const Vector3d& corner : corners_of(mesh, mesh.triangles[i])) {
+      points[part[i]].push_back(corner);
+    }
   }
   ConvexDecomposition result;
   for (std::vector<Vector3d>& cloud : points) {

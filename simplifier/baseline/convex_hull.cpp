@@ -142,8 +142,8 @@ class Expansion {
 
  private:
   Plane plane(const TriangleMesh& hull, const Eigen::Vector3i& t) const {
-    const auto vertex = [&](int k) { return hull.vertices[static_cast<std::size_t>(t[k])]; };
-    return {vertex(0), vertex(1), vertex(2), center_, 2.0 * extent_};
+    const auto [a, b, c] = corners_of(hull, t);
+    return {a, b, c, center_, 2.0 * extent_};
   }
 
   // How far beyond a plane a point stands at most, times the length of the normal.
@@ -261,7 +261,7 @@ ConvexHull convex_hull(const TriangleMesh& mesh, const ConvexHullOptions& option
   validate(mesh, "mesh");
   Points used;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) used.push_back(mesh.vertices[static_cast<std::size_t>(t[k])]);
+    for (const Vector3d& corner : corners_of(mesh, t)) used.push_back(corner);
   }
   return convex_hull(used, {options.padding + mesh.vertex_error, options.max_expansion}, "mesh");
 }

@@ -20,14 +20,6 @@ namespace {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-Corners corners_of(const TriangleMesh& mesh, const Eigen::Vector3i& triangle) {
-  Corners corners;
-  for (std::size_t k = 0; k < 3; ++k) {
-    corners[k] = mesh.vertices[static_cast<std::size_t>(triangle[static_cast<int>(k)])];
-  }
-  return corners;
-}
-
 // Distance to the solid of a mesh.
 class SolidDistance {
  public:

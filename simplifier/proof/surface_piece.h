@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/triangle_mesh.h"
 #include "spheretree/rounding.h"
 
 #include <Eigen/Core>
@@ -16,11 +15,6 @@ namespace spherule::internal {
 struct SurfacePiece {
   std::array<Eigen::Vector3d, 3> corner;
 };
-
-inline SurfacePiece piece_of(const TriangleMesh& mesh, const Eigen::Vector3i& triangle) {
-  const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(triangle[k])]; };
-  return {{corner(0), corner(1), corner(2)}};
-}
 
 struct FurthestCorner {
   Eigen::Vector3d corner;

@@ -54,10 +54,7 @@ CoverageProof prove_surface(const TriangleMesh& mesh, const SpheresToProve& sphe
   };
   std::vector<SurfacePiece> pieces;
   pieces.reserve(mesh.triangles.size());
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    pieces.push_back({{vertex(0), vertex(1), vertex(2)}});
-  }
+  for (const Eigen::Vector3i& t : mesh.triangles) pieces.push_back({corners_of(mesh, t)});
   const auto split = [](const SurfacePiece& piece, std::vector<SurfacePiece>& parts) {
     halve(piece, parts);
   };

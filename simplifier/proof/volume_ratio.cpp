@@ -182,11 +182,6 @@ double number_of_lines(std::size_t things) {
   return std::clamp(kMaxTests / static_cast<double>(things), kMinLines, kMaxLines);
 }
 
-std::array<Vector3d, 3> corners_of(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
-  const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-  return {corner(0), corner(1), corner(2)};
-}
-
 }  // namespace
 
 double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> spheres) {

@@ -34,10 +34,7 @@ CellOctree::CellOctree(const TriangleMesh& mesh, double step, double padding) : 
   std::vector<Triangle> triangles;
   double largest_area = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    Triangle corners;
-    for (int k = 0; k < 3; ++k) {
-      corners[static_cast<std::size_t>(k)] = mesh.vertices[static_cast<std::size_t>(t[k])];
-    }
+    const Triangle corners = corners_of(mesh, t);
     triangles.push_back(corners);
     largest_area = std::max(largest_area,
                             0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm());

@@ -22,8 +22,8 @@ constexpr double kFar = 3.0;
 
 MeshProbe::MeshProbe(const TriangleMesh& mesh) : distance_(mesh) {
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    corners_.push_back({corner(0), corner(1), corner(2)});
+    const auto [a, b, c] = corners_of(mesh, t);
+    corners_.push_back({a, b, c});
   }
   build(0, static_cast<std::int32_t>(corners_.size()));
 }

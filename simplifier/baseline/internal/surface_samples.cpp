@@ -16,11 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::array<Vector3d, 3> corners_of(const TriangleMesh& mesh, const Eigen::Vector3i& triangle) {
-  const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(triangle[k])]; };
-  return {corner(0), corner(1), corner(2)};
-}
-
 double area_of(const std::array<Vector3d, 3>& t) {
   return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
 }

@@ -22,10 +22,10 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 std::vector<Vector3d> points_on(const TriangleMesh& mesh, std::size_t count, Random& random) {
   std::vector<double> cumulative;
   cumulative.reserve(mesh.triangles.size());
-  const auto vertex = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
   double total = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    total += (vertex(t[1]) - vertex(t[0])).cross(vertex(t[2]) - vertex(t[0])).norm();
+    const auto [a, b, c] = corners_of(mesh, t);
+    total += (b - a).cross(c - a).norm();
     cumulative.push_back(total);
   }
   std::vector<Vector3d> points(count);
@@ -33,10 +33,10 @@ std::vector<Vector3d> points_on(const TriangleMesh& mesh, std::size_t count, Ran
     const auto it = std::upper_bound(cumulative.begin(), cumulative.end(), random.unit() * total);
     const auto i = std::min<std::size_t>(static_cast<std::size_t>(it - cumulative.begin()),
                                          mesh.triangles.size() - 1);
-    const Eigen::Vector3i& t = mesh.triangles[i];
+    const auto [a, b, c] = corners_of(mesh, mesh.triangles[i]);
     const double s = std::sqrt(random.unit());
     const double v = random.unit();
-    p = (1.0 - s) * vertex(t[0]) + s * (1.0 - v) * vertex(t[1]) + s * v * vertex(t[2]);
+    p = (1.0 - s) * a + s * (1.0 - v) * b + s * v * c;
   }
   return points;
 }
