@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/mesh_report.h"
 
+#include "mesh/geometry/edge_uses.h"
 #include "mesh/geometry/self_intersection.h"
 #include "mesh/geometry/weld.h"
 #include "mesh/shells/disjoint_sets.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <sstream>
+#include <string>
 #include <vector>
 
 namespace spherule {
@@ -19,10 +22,6 @@ namespace {
 constexpr double kZeroArea = 1e-14;
 // A volume of this share of area times size is rounding.
 constexpr double kZeroVolume = 1e-12;
-
-bool has_repeated_corner(const Eigen::Vector3i& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
 
 bool is_degenerate(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
   const auto [a, b, c] = corners_of(mesh, t);
@@ -44,30 +43,8 @@ std::size_t count_duplicates(const TriangleMesh& mesh) {
   return static_cast<std::size_t>(sorted.end() - last);
 }
 
-// A use of the edge low-high by a triangle, `forward` if it runs from low to high.
-struct EdgeUse {
-  int low, high;
-  bool forward;
-  friend auto operator<=>(const EdgeUse&, const EdgeUse&) = default;
-};
-
-// Sorted. A triangle with a repeated corner runs along an edge and back: as a chain it is zero, and
-// it is left out.
-std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * mesh.triangles.size());
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    if (has_repeated_corner(t)) continue;
-    for (int k = 0; k < 3; ++k) {
-      const int from = t[k], to = t[(k + 1) % 3];
-      uses.push_back({std::min(from, to), std::max(from, to), from < to});
-    }
-  }
-  std::sort(uses.begin(), uses.end());
-  return uses;
-}
-
 using internal::DisjointSets;
+using internal::EdgeUse;
 
 // Of the vertices.
 DisjointSets components_of(const TriangleMesh& mesh) {
@@ -90,22 +67,18 @@ struct Component {
 // Counts the edges and marks the components that are not closed.
 void count_edges(const TriangleMesh& mesh, DisjointSets& components, std::vector<Component>& parts,
                  MeshReport& report) {
-  const std::vector<EdgeUse> uses = edge_uses(mesh);
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t forward = 0, backward = 0, j = i;
-    for (; j < uses.size() && uses[j].low == uses[i].low && uses[j].high == uses[i].high; ++j) {
-      ++(uses[j].forward ? forward : backward);
-    }
-    const std::size_t count = j - i;
-    report.boundary_edges += count == 1;
-    report.non_manifold_edges += count > 2;
-    report.misoriented_edges += count == 2 && forward != backward;
-    if (forward != backward) {
+  const std::vector<EdgeUse> uses = internal::edge_uses(mesh.triangles);
+  internal::for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    int turns = 0;
+    for (const EdgeUse& use : edge) turns += use.turn;
+    report.boundary_edges += edge.size() == 1;
+    report.non_manifold_edges += edge.size() > 2;
+    report.misoriented_edges += edge.size() == 2 && turns != 0;
+    if (turns != 0) {
       report.closed = false;
-      parts[components.find(static_cast<std::uint32_t>(uses[i].low))].closed = false;
+      parts[components.find(static_cast<std::uint32_t>(edge.front().low))].closed = false;
     }
-    i = j;
-  }
+  });
 }
 
 void add_line(std::ostringstream& out, std::size_t count, const char* one, const char* many,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/concave_edges.h"
 
+#include "mesh/geometry/edge_uses.h"
 #include "mesh/geometry/weld.h"
+#include "simplifier/internal/sharp_edge.h"
 
 #include <algorithm>
 #include <array>
@@ -11,17 +13,18 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
 
 using Eigen::Vector3d;
+using internal::EdgeUse;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSharp = 150.0 * kDegree;
 // Triangles that lie on each other leave no room between them.
-constexpr double kFolded = kDegree;
+constexpr double kFolded = std::numbers::pi / 180.0;
 // Sharper edges are treated like this one (11 degrees), lest their zones grow without bound.
 constexpr double kLeastSine = 0.1;
 constexpr double kLeastDiameter = 1.0 / 4.0;  // of D: two halvings of the step
@@ -57,7 +60,7 @@ std::optional<double> concave_angle(const std::vector<Side>& sides) {
       }
     }
   }
-  if (least >= kSharp) return std::nullopt;
+  if (least >= internal::kSharpAngle) return std::nullopt;
   return least;
 }
 
@@ -70,7 +73,9 @@ std::vector<Edge> concave_edges(const TriangleMesh& mesh) {
     volume += (a - origin).dot((b - origin).cross(c - origin));
   }
   const double outwards = volume < 0.0 ? -1.0 : 1.0;
-  std::map<std::pair<int, int>, std::vector<Side>> sides;
+  // With an area, and once each.
+  std::vector<Eigen::Vector3i> triangles;
+  std::vector<Vector3d> normals;
   std::set<std::array<int, 3>> seen;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     std::array<int, 3> corners{t[0], t[1], t[2]};
@@ -79,23 +84,29 @@ std::vector<Edge> concave_edges(const TriangleMesh& mesh) {
     const std::array<Vector3d, 3> corner = corners_of(mesh, t);
     const Vector3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     if (!(cross.norm() > 0.0)) continue;
-    const Vector3d normal = outwards * cross.normalized();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t next = (k + 1) % 3;
-      const Vector3d along = (corner[next] - corner[k]).normalized();
-      const Vector3d third = corner[(k + 2) % 3] - corner[k];
-      const int from = t[static_cast<int>(k)], to = t[static_cast<int>(next)];
-      sides[std::minmax(from, to)].push_back(
-          {(third - along * along.dot(third)).normalized(), normal, from < to});
-    }
+    triangles.push_back(t);
+    normals.emplace_back(outwards * cross.normalized());
   }
+  const auto vertex = [&](int v) -> const Vector3d& {
+    return mesh.vertices[static_cast<std::size_t>(v)];
+  };
   std::vector<Edge> edges;
-  for (const auto& [ends, at_edge] : sides) {
-    if (const std::optional<double> angle = concave_angle(at_edge)) {
-      edges.push_back(
-          {static_cast<std::size_t>(ends.first), static_cast<std::size_t>(ends.second), *angle});
+  const std::vector<EdgeUse> uses = internal::edge_uses(triangles);
+  internal::for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    std::vector<Side> sides;
+    for (const EdgeUse& use : edge) {
+      const auto triangle = static_cast<std::size_t>(use.triangle);
+      const Vector3d& from = vertex(use.from());
+      const Vector3d along = (vertex(use.to()) - from).normalized();
+      const Vector3d third = vertex(internal::opposite_corner(triangles[triangle], use)) - from;
+      sides.push_back(
+          {(third - along * along.dot(third)).normalized(), normals[triangle], use.turn > 0});
     }
-  }
+    if (const std::optional<double> angle = concave_angle(sides)) {
+      edges.push_back({static_cast<std::size_t>(edge.front().low),
+                       static_cast<std::size_t>(edge.front().high), *angle});
+    }
+  });
   return edges;
 }
 

@@ -3,6 +3,7 @@
 
 #include "mesh/geometry/point_grid.h"
 #include "mesh/mesh_distance.h"
+#include "simplifier/internal/sharp_edge.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/solid/cube.h"
 #include "simplifier/solid/usable_external.h"
@@ -37,7 +38,6 @@ constexpr double kThinReach = 2.0;
 constexpr double kCube = 2.0;  // edge of the cubes that points are sorted into
 
 constexpr std::size_t kMostPerEdge = 100000;
-constexpr double kSharp = 0.2588190451025207;  // cosine of half of 150 degrees
 
 struct Edge {
   Vector3d from, to;
@@ -85,8 +85,9 @@ Points edge_points(const TriangleMesh& mesh, const internal::Clearance& clearanc
     for (const Vector3d& inward : edge.inward) beyond -= inward;
     if (!(beyond.norm() > 1e-6)) continue;
     beyond.normalize();
-    if (!std::ranges::all_of(edge.inward,
-                             [&](const Vector3d& in) { return in.dot(beyond) <= -kSharp; })) {
+    if (!std::ranges::all_of(edge.inward, [&](const Vector3d& in) {
+          return in.dot(beyond) <= -internal::kCosineOfHalfSharp;
+        })) {
       continue;
     }
     const double length = (edge.to - edge.from).norm();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/shells/mesh_shells.h"
 
+#include "mesh/geometry/edge_uses.h"
 #include "mesh/shells/oriented_disjoint_sets.h"
 
 #include <Eigen/Geometry>
@@ -17,20 +18,10 @@ namespace {
 using Corners = std::array<int, 3>;
 using Eigen::Vector3d;
 
-bool is_degenerate(const Corners& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 // Whether the corners go round in ascending order.
 bool ascends(const Corners& t) {
   return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
 }
-
-struct EdgeUse {
-  int low, high;  // corners
-  int triangle;
-  int turn;  // +1 from low to high, -1 back
-};
 
 // The two sides of a triangle, as elements of sets: that from which its corners go round
 // anticlockwise, and the other one.
@@ -55,18 +46,18 @@ class ShellFinder {
         has_junction_(triangles.size(), 0),
         is_open_shell_(triangles.size(), 0),
         is_open_patch_(triangles.size(), 0) {
-    sort_edges();
-    for_each_edge([&](std::span<const EdgeUse> uses) {
+    const std::vector<EdgeUse> edges = edge_uses(triangles);
+    for_each_edge(edges, [&](std::span<const EdgeUse> uses) {
       for (const EdgeUse& use : uses) shells_.join(use.triangle, uses[0].triangle);
     });
     compare_alike();
-    for_each_edge([&](std::span<const EdgeUse> uses) {
+    for_each_edge(edges, [&](std::span<const EdgeUse> uses) {
       weigh_shell(uses);
       take_firsts(uses);
       join_patches();
     });
     std::vector<int> balance(triangles.size(), 0);
-    for_each_edge([&](std::span<const EdgeUse> uses) {
+    for_each_edge(edges, [&](std::span<const EdgeUse> uses) {
       if (is_plain(shell_of(uses[0].triangle))) return;
       take_firsts(uses);
       weigh_patches(balance);
@@ -83,7 +74,7 @@ class ShellFinder {
     std::int32_t count = 0;
     const auto number = [&](std::int32_t& of) { return of >= 0 ? of : of = count++; };
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      if (is_degenerate(triangles_[i])) continue;
+      if (has_repeated_corner(triangles_[i])) continue;
       const auto triangle = static_cast<int>(i);
       const std::size_t shell = shell_of(triangle);
       TriangleRole& role = result.roles[i];
@@ -114,40 +105,13 @@ class ShellFinder {
     return !cancels_[shell] && !has_junction_[shell] && !is_open_shell_[shell];
   }
 
-  void sort_edges() {
-    edges_.reserve(3 * triangles_.size());
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      const Corners& t = triangles_[i];
-      if (is_degenerate(t)) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int from = t[k], to = t[(k + 1) % 3];
-        edges_.push_back(
-            {std::min(from, to), std::max(from, to), static_cast<int>(i), from < to ? 1 : -1});
-      }
-    }
-    std::sort(edges_.begin(), edges_.end(), [](const EdgeUse& a, const EdgeUse& b) {
-      return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-  }
-
-  template <typename Function>
-  void for_each_edge(const Function& function) {
-    for (std::size_t i = 0, end = 0; i < edges_.size(); i = end) {
-      while (end < edges_.size() && edges_[end].low == edges_[i].low &&
-             edges_[end].high == edges_[i].high) {
-        ++end;
-      }
-      function(std::span(edges_).subspan(i, end - i));
-    }
-  }
-
   // Of triangles with the same corners: which is the first, whether they are turned both ways, and
   // whether one way is more frequent.
   void compare_alike() {
     std::vector<std::pair<Corners, int>> sorted;
     sorted.reserve(triangles_.size());
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      if (is_degenerate(triangles_[i])) continue;
+      if (has_repeated_corner(triangles_[i])) continue;
       Corners corners = triangles_[i];
       std::sort(corners.begin(), corners.end());
       sorted.emplace_back(corners, static_cast<int>(i));
@@ -225,9 +189,7 @@ class ShellFinder {
     angles_.clear();
     for (const EdgeUse& use : firsts_) {
       const Corners& t = triangles_[static_cast<std::size_t>(use.triangle)];
-      const int third = *std::find_if(
-          t.begin(), t.end(), [&](int corner) { return corner != use.low && corner != use.high; });
-      const Vector3d beside = vertex(third) - origin;
+      const Vector3d beside = vertex(opposite_corner(t, use)) - origin;
       angles_.emplace_back(std::atan2(up.dot(beside), right.dot(beside)), use);
     }
     std::sort(angles_.begin(), angles_.end(), [](const auto& a, const auto& b) {
@@ -239,7 +201,6 @@ class ShellFinder {
 
   const std::vector<Corners>& triangles_;
   const std::span<const Vector3d> vertices_;
-  std::vector<EdgeUse> edges_;
   std::vector<EdgeUse> firsts_;                     // of one edge
   std::vector<std::pair<double, EdgeUse>> angles_;  // of these
   OrientedDisjointSets shells_, patches_;           // of triangles
