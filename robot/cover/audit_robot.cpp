@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/audit_robot.h"
 
+#include "mesh/geometry/surface_sampling.h"
 #include "robot/cover/internal/link_solid.h"
 #include "robot/cover/internal/shapes_in_spheres.h"
 #include "robot/model/kinematics.h"
@@ -76,17 +77,13 @@ std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const L
   return parts;
 }
 
-// Points spread over the surface: one in every equal share of its area, the place in the triangle
-// by a sequence that fills the unit square evenly.
+// Of points spread over the surface: one in every equal share of its area.
 double uncovered_share(const LinkParts& part) {
   const TriangleMesh& mesh = *part.mesh;
   std::vector<double> area_up_to;
   double area = 0.0;
-  const auto corner = [&](const Eigen::Vector3i& triangle, int k) -> const Vector3d& {
-    return mesh.vertices[static_cast<std::size_t>(triangle[k])];
-  };
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    area += (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm() / 2.0;
+    area += internal::area_of(corners_of(mesh, t));
     area_up_to.push_back(area);
   }
   std::size_t outside = 0;
@@ -94,17 +91,8 @@ double uncovered_share(const LinkParts& part) {
   for (std::size_t i = 0; i < kSharePoints; ++i) {
     const double place = area * (static_cast<double>(i) + 0.5) / static_cast<double>(kSharePoints);
     while (triangle + 1 < area_up_to.size() && area_up_to[triangle] < place) ++triangle;
-    constexpr double kStepU = 0.7548776662466927;  // 1/g and 1/g^2, g^3 = g + 1
-    constexpr double kStepV = 0.5698402909980532;
-    double u = std::fmod(kStepU * static_cast<double>(i), 1.0);
-    double v = std::fmod(kStepV * static_cast<double>(i), 1.0);
-    if (u + v > 1.0) {
-      u = 1.0 - u;
-      v = 1.0 - v;
-    }
-    const Eigen::Vector3i& t = mesh.triangles[triangle];
     const Vector3d point =
-        corner(t, 0) + u * (corner(t, 1) - corner(t, 0)) + v * (corner(t, 2) - corner(t, 0));
+        internal::evenly_in(corners_of(mesh, mesh.triangles[triangle]), static_cast<double>(i));
     // The mesh may stand out of curved shapes by the chord error.
     const bool held = std::ranges::any_of(part.spheres, [&](const Sphere& sphere) {
       return (point - sphere.center).norm() <= sphere.radius + part.chord_error;

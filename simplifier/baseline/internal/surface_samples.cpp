@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/surface_samples.h"
 
+#include "mesh/geometry/surface_sampling.h"
 #include "simplifier/support/random.h"
 #include "spheretree/error.h"
 
@@ -15,10 +16,6 @@ namespace spherule::internal {
 namespace {
 
 using Eigen::Vector3d;
-
-double area_of(const std::array<Vector3d, 3>& t) {
-  return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
-}
 
 bool comes_before(const Vector3d& a, const Vector3d& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
@@ -55,20 +52,10 @@ std::vector<Vector3d> even_samples(const TriangleMesh& mesh, std::size_t count,
     const double whole = std::floor(due);
     due -= whole;
     const std::size_t here = std::max(per_triangle, static_cast<std::size_t>(whole));
-    // A lattice of low discrepancy in the unit square (Roberts's R2 sequence), from a random start.
     const double start_u = random.unit();
     const double start_v = random.unit();
     for (std::size_t i = 0; i < here; ++i) {
-      const double k = static_cast<double>(i + 1);
-      double u = start_u + 0.7548776662466927 * k;
-      double v = start_v + 0.5698402909980532 * k;
-      u -= std::floor(u);
-      v -= std::floor(v);
-      if (u + v > 1.0) {
-        u = 1.0 - u;
-        v = 1.0 - v;
-      }
-      points.push_back(t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]));
+      points.push_back(evenly_in(t, static_cast<double>(i + 1), {start_u, start_v}));
     }
   }
   return points;
