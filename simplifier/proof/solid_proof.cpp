@@ -66,20 +66,18 @@ CoverageProof prove_solid(const Clearance& clearance, const MeshDistance& distan
     if (center_inside) {
       note(cell.box.center, gap.lower);
       found.smallest = reach <= finest;
-    } else if (const auto on_mesh =
-                   reach <= finest ? mesh_point_in(distance, cell.box) : std::nullopt) {
-      // External spheres may take away what they pierce of the mesh.
-      if (clearance(*on_mesh).upper >= -rounding) {
-        note(*on_mesh, sub_down(spheres.hierarchy.nearest(*on_mesh).lower, rounding));
-      }
-      found.smallest = true;
-    } else if (const auto in_solid = reach <= kFinestOutside * finest
-                                         ? solid_point_near(clearance, cell.box, finest)
-                                         : std::nullopt) {
-      note(*in_solid, spheres.hierarchy.nearest(*in_solid).lower);
-      found.smallest = true;
     } else {
-      found.smallest = reach <= least;
+      const std::optional<SolidPoint> stands_for =
+          reach <= finest ? solid_point_for(clearance, distance, cell.box, {finest, finest})
+                          : std::nullopt;
+      found.smallest = stands_for || reach <= least;
+      if (!stands_for) return found;
+      const auto& [kind, point] = *stands_for;
+      // External spheres may take away what they pierce of the mesh.
+      if (kind == SolidPoint::Kind::kOnMesh && clearance(point).upper >= -rounding) {
+        note(point, sub_down(spheres.hierarchy.nearest(point).lower, rounding));
+      }
+      if (kind == SolidPoint::Kind::kInSolid) note(point, spheres.hierarchy.nearest(point).lower);
     }
     return found;
   };

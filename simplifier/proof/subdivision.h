@@ -2,10 +2,12 @@
 #pragma once
 
 #include "simplifier/proof/proof.h"
+#include "simplifier/support/best_first.h"
 #include "simplifier/support/parallel.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -50,13 +52,10 @@ class Subdivision {
     for (const Piece& piece : pieces_) {
       heap.push_back({piece, std::numeric_limits<double>::infinity(), made++});
     }
-    const auto below = [](const Open& a, const Open& b) {
-      return a.upper < b.upper || (a.upper == b.upper && a.order > b.order);
-    };
-    std::make_heap(heap.begin(), heap.end(), below);
+    std::make_heap(heap.begin(), heap.end(), BestFirst());
     std::vector<Piece> parts;
     while (!heap.empty() && state.proof.examined < std::max(kBestFirst, 2 * pieces_.size())) {
-      std::pop_heap(heap.begin(), heap.end(), below);
+      std::pop_heap(heap.begin(), heap.end(), BestFirst());
       const Open open = std::move(heap.back());
       heap.pop_back();
       double upper = open.upper;
@@ -64,10 +63,10 @@ class Subdivision {
       if (!step(open.piece, state, is_early ? kCloserShare : 1.0, upper, parts)) continue;
       for (const Piece& part : parts) {
         heap.push_back({part, upper, made++});
-        std::push_heap(heap.begin(), heap.end(), below);
+        std::push_heap(heap.begin(), heap.end(), BestFirst());
       }
     }
-    std::sort(heap.begin(), heap.end(), below);
+    std::sort(heap.begin(), heap.end(), BestFirst());
     prove_in_blocks(heap, state);
     return state.proof;
   }

@@ -74,4 +74,26 @@ std::optional<Vector3d> solid_point_in_groove(const Clearance& clearance, const 
   return std::nullopt;
 }
 
+std::optional<SolidPoint> solid_point_for(const Clearance& clearance, const MeshDistance& distance,
+                                          const BoxCell& cell, const SolidPointSearch& search,
+                                          const std::function<bool(const Vector3d&)>& accepts) {
+  using Kind = SolidPoint::Kind;
+  const double reach = cell.reach();
+  const auto on_mesh = mesh_point_in(distance, cell);
+  if (on_mesh && (!accepts || accepts(*on_mesh))) return SolidPoint{Kind::kOnMesh, *on_mesh};
+  if (reach > kFinestOutside * search.finest) return std::nullopt;
+  if (const auto near = solid_point_near(clearance, cell, search.within)) {
+    return SolidPoint{Kind::kInSolid, *near};
+  }
+  if (reach > std::max(kFinestPinch * search.finest, least_reach(clearance.box()))) {
+    return std::nullopt;
+  }
+  if (search.grooves) {
+    if (const auto near = solid_point_in_groove(clearance, cell.center, reach, search.within)) {
+      return SolidPoint{Kind::kInSolid, *near};
+    }
+  }
+  return SolidPoint{Kind::kPinch, cell.center};
+}
+
 }  // namespace spherule::internal

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include <functional>
 #include <optional>
 
 // What the searches and proofs over cells of space query about S; what they make of the answers is
@@ -58,5 +59,27 @@ std::optional<Eigen::Vector3d> solid_point_near(const Clearance& clearance, cons
 std::optional<Eigen::Vector3d> solid_point_in_groove(const Clearance& clearance,
                                                      const Eigen::Vector3d& start,
                                                      double first_step, double within);
+
+// How a point of S is looked for that stands for a cell whose centre is outside of S.
+struct SolidPointSearch {
+  double finest;         // half diagonal of the finest cells elsewhere: the shares above are of it
+  double within;         // how far from the centre of the cell a point of S may be, off the mesh
+  bool grooves = false;  // whether smallest cells are searched where external spheres meet, too
+};
+struct SolidPoint {
+  enum class Kind : char {
+    kOnMesh,   // mesh_point_in()
+    kInSolid,  // found by moving away from external spheres
+    kPinch     // the centre of a cell too small to be halved, near which no point of S was found
+  };
+  Kind kind;
+  Eigen::Vector3d point;
+};
+// None if the cell has to be halved. Points of the mesh for which `accepts` is false are passed
+// over; none are where it is empty.
+std::optional<SolidPoint> solid_point_for(
+    const Clearance& clearance, const MeshDistance& distance, const BoxCell& cell,
+    const SolidPointSearch& search,
+    const std::function<bool(const Eigen::Vector3d&)>& accepts = {});
 
 }  // namespace spherule::internal

@@ -141,14 +141,9 @@ std::optional<SolidCells::Leak> SolidCells::leak_in(const Cell& cell, const Near
     return std::nullopt;
   }
   if (reach > finest) return std::nullopt;
-  if (const auto on_mesh = mesh_point_in(distance_, cell.box)) return Leak{*on_mesh, true};
-  if (reach > kFinestOutside * finest) return std::nullopt;
-  if (const auto near = solid_point_near(clearance_, cell.box, finest)) return Leak{*near, true};
-  if (reach > std::max(kFinestPinch * finest, least_reach(clearance_.box()))) return std::nullopt;
-  if (const auto near = solid_point_in_groove(clearance_, cell.box.center, reach, finest)) {
-    return Leak{*near, true};
-  }
-  return Leak{cell.box.center, false};
+  const auto stands_for = solid_point_for(clearance_, distance_, cell.box, {finest, finest, true});
+  if (!stands_for) return std::nullopt;
+  return Leak{stands_for->point, stands_for->kind != SolidPoint::Kind::kPinch};
 }
 
 SolidCells::Refined SolidCells::refine(const Cell& start, const SpheresToProve& spheres,

@@ -2,6 +2,7 @@
 #include "simplifier/stage2/paper/uncovered_search.h"
 
 #include "simplifier/solid/solid_query.h"
+#include "simplifier/support/best_first.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>
@@ -21,25 +22,17 @@ constexpr double kPlateau = 0.1;
 
 UncoveredSearch::UncoveredSearch(const Clearance& clearance, const MeshDistance& distance,
                                  double target, double tolerance)
-    : clearance_(clearance),
-      distance_(distance),
-      target_(target),
-      tolerance_(tolerance),
-      least_(std::max(kFinestPinch * tolerance, least_reach(clearance.box()))) {
+    : clearance_(clearance), distance_(distance), target_(target), tolerance_(tolerance) {
   push({BoxCell::around(clearance.box()), std::numeric_limits<double>::infinity(), made_++, false});
-}
-
-bool UncoveredSearch::below(const Cell& a, const Cell& b) {
-  return a.upper < b.upper || (a.upper == b.upper && a.order > b.order);
 }
 
 void UncoveredSearch::push(const Cell& cell) {
   heap_.push_back(cell);
-  std::push_heap(heap_.begin(), heap_.end(), below);
+  std::push_heap(heap_.begin(), heap_.end(), BestFirst());
 }
 
 UncoveredSearch::Cell UncoveredSearch::pop() {
-  std::pop_heap(heap_.begin(), heap_.end(), below);
+  std::pop_heap(heap_.begin(), heap_.end(), BestFirst());
   const Cell cell = heap_.back();
   heap_.pop_back();
   return cell;
@@ -88,20 +81,14 @@ UncoveredSearch::Peak UncoveredSearch::next(const SphereSet& spheres) {
 
 std::optional<UncoveredSearch::Peak> UncoveredSearch::peak_beside(const Cell& cell,
                                                                   const SphereSet& spheres) const {
-  const double reach = cell.box.reach();
-  const auto on_mesh = mesh_point_in(distance_, cell.box);
-  if (on_mesh && spheres.nearest(*on_mesh).lower > target_) return Peak{*on_mesh, cell.upper, 0.0};
-  if (reach > kFinestOutside * tolerance_) return std::nullopt;
-  const auto peak_at = [&](const Vector3d& point) {
-    return Peak{point, cell.upper, std::max(0.0, spheres.nearest(point).lower)};
-  };
-  const double within = kNear * target_;
-  if (const auto near = solid_point_near(clearance_, cell.box, within)) return peak_at(*near);
-  if (reach > least_) return std::nullopt;
-  if (const auto near = solid_point_in_groove(clearance_, cell.box.center, reach, within)) {
-    return peak_at(*near);
-  }
-  return Peak{cell.box.center, cell.upper, 0.0};
+  using Kind = SolidPoint::Kind;
+  const auto found = solid_point_for(
+      clearance_, distance_, cell.box, {tolerance_, kNear * target_, true},
+      [&](const Eigen::Vector3d& on_mesh) { return spheres.nearest(on_mesh).lower > target_; });
+  if (!found) return std::nullopt;
+  const double lower =
+      found->kind == Kind::kInSolid ? std::max(0.0, spheres.nearest(found->point).lower) : 0.0;
+  return Peak{found->point, cell.upper, lower};
 }
 
 }  // namespace spherule::internal

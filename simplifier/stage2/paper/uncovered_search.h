@@ -46,7 +46,6 @@ class UncoveredSearch {
   // For a cell of S with its centre outside of S, small enough to stand for a peak; none if it has
   // to be halved.
   std::optional<Peak> peak_beside(const Cell& cell, const SphereSet& spheres) const;
-  static bool below(const Cell& a, const Cell& b);
   void push(const Cell& cell);
   Cell pop();
 
@@ -54,7 +53,6 @@ class UncoveredSearch {
   const MeshDistance& distance_;
   double target_;
   double tolerance_;
-  double least_;  // half diagonal of the smallest cell
   std::vector<Cell> heap_;
   std::uint64_t made_ = 0;
 };
