@@ -19,11 +19,15 @@ class CoverGoal {
     step_ = std::max<std::size_t>(1, step_ / 2);
   }
   void reached(std::size_t count) {
-    constexpr std::size_t kLargestStep = 8;  // this part of the count
-    const std::size_t largest = std::max<std::size_t>(1, count / kLargestStep);
+    const std::size_t largest = largest_step(count);
     step_ = proved_ == 0 ? largest : std::min(largest, count <= target_ ? 2 * step_ : step_);
     proved_ = count;
     aim();
+  }
+  // By how many spheres fewer than `count` are searched for at most.
+  static std::size_t largest_step(std::size_t count) {
+    constexpr std::size_t kPart = 8;
+    return std::max<std::size_t>(1, count / kPart);
   }
   // From here on in steps of a small part of the count.
   void restart() {

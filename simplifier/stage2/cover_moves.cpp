@@ -22,7 +22,7 @@ constexpr double kLargestMove = 0.4;  // of how far a sphere reaches along a pla
 // For every sphere of the solution the rows that it alone covers.
 std::vector<std::vector<std::uint32_t>> exclusive_rows(const CoverProblem& problem,
                                                        const Columns& solution) {
-  const std::vector<std::uint32_t> times = problem.times_covered(solution);
+  const std::vector<std::uint32_t> times = times_covered(problem.instance(), solution);
   std::vector<std::vector<std::uint32_t>> exclusive(solution.size());
   for (std::size_t i = 0; i < solution.size(); ++i) {
     for (const std::uint32_t row : problem.instance().columns[solution[i]]) {
@@ -53,7 +53,7 @@ void spread(const Clearance& clearance, CoverProblem& problem, Columns& solution
   }
   problem.add_candidates(moved);
   const auto& columns = problem.instance().columns;
-  std::vector<std::uint32_t> times = problem.times_covered(solution);
+  std::vector<std::uint32_t> times = times_covered(problem.instance(), solution);
   for (std::size_t i = 0; i < solution.size(); ++i) {
     const std::vector<std::uint32_t>& before = columns[solution[i]];
     const std::vector<std::uint32_t>& after = columns[replacement[i]];

@@ -80,14 +80,6 @@ std::vector<std::size_t> CoverProblem::keep_only(const std::vector<char>& kept) 
   return number;
 }
 
-std::vector<std::uint32_t> CoverProblem::times_covered(const Columns& solution) const {
-  std::vector<std::uint32_t> times(rows_.size(), 0);
-  for (const std::size_t c : solution) {
-    for (const std::uint32_t row : instance_.columns[c]) ++times[row];
-  }
-  return times;
-}
-
 // Notes which rows from `first_row` on the columns from `first_column` on cover.
 void CoverProblem::cover_rows(std::size_t first_column, std::size_t first_row) {
   std::vector<Eigen::Vector3d> points;

@@ -66,8 +66,6 @@ class CoverProblem {
 
   // How many pairs of a row and a column that covers it there are.
   std::uint64_t entries() const { return entries_; }
-  // How many columns of the solution cover each row.
-  std::vector<std::uint32_t> times_covered(const Columns& solution) const;
 
  private:
   // Enters the rows of a column, from the `first` in its list on, into columns_of_ and entries_.

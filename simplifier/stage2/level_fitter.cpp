@@ -3,6 +3,7 @@
 
 #include "simplifier/solid/box_cell.h"
 #include "simplifier/stage2/cover_candidates.h"
+#include "simplifier/stage2/cover_goal.h"
 #include "simplifier/stage2/cover_moves.h"
 #include "simplifier/stage2/search/cover_search.h"
 #include "simplifier/support/random.h"
@@ -23,7 +24,6 @@ using Eigen::Vector3d;
 constexpr std::size_t kStarts = 10000;        // of candidates, in all
 constexpr std::size_t kStartsPerSphere = 24;  // at most
 constexpr std::uint64_t kWork = 50;           // of a search: visits per entry of the problem
-constexpr std::size_t kLargestStep = 8;       // this part of the count
 
 // What is kept off E for rounding: of clearances (32 u of the largest coordinate, SphereHierarchy),
 // of enclosures, and SphereLevel::kReserve of a radius, which is below twice the box's extent.
@@ -98,7 +98,8 @@ void LevelFitter::add_own() {
 
 void LevelFitter::improve(Columns& solution) {
   Columns tried = solution;
-  std::size_t step = std::max<std::size_t>(1, solution.size() / kLargestStep);
+  // Unlike CoverGoal it never searches in larger steps again: the rows are all there is to prove.
+  std::size_t step = CoverGoal::largest_step(solution.size());
   std::uint64_t seed = options_.seed;
   CoverSearch::Rows all;
   for (std::size_t row = 0; row < finer_.size(); ++row) all.add(row);

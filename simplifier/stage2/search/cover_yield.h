@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "simplifier/cover.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -14,7 +16,7 @@ class CoverYield {
  public:
   // `effort` as in CoverOptions.
   explicit CoverYield(int effort)
-      : least_(kLeast * std::min(1.0, kDefaultEffort / static_cast<double>(effort))) {}
+      : least_(kLeast * std::min(1.0, CoverOptions{}.effort / static_cast<double>(effort))) {}
 
   // After the first answer and after each round, with the count proved by then.
   void add(std::size_t count) { counts_.push_back(count); }
@@ -33,7 +35,6 @@ class CoverYield {
 
  private:
   static constexpr double kLeast = 0.01;
-  static constexpr double kDefaultEffort = 60.0;
   static constexpr std::size_t kLatest = 20;       // rounds at least, to tell a rate from chance
   static constexpr std::size_t kFirstAnswer = 10;  // takes about as long as so many rounds
 

@@ -10,10 +10,7 @@ namespace {
 // Drops the columns whose rows are all covered by others that are kept.
 std::vector<std::size_t> without_redundant(const SetCoverInstance& instance,
                                            std::vector<std::size_t> chosen) {
-  std::vector<std::uint32_t> times(instance.row_count, 0);
-  for (const std::size_t c : chosen) {
-    for (const std::uint32_t row : instance.columns[c]) ++times[row];
-  }
+  std::vector<std::uint32_t> times = times_covered(instance, chosen);
   std::vector<std::size_t> kept;
   for (auto it = chosen.rbegin(); it != chosen.rend(); ++it) {
     const std::vector<std::uint32_t>& column = instance.columns[*it];
@@ -59,6 +56,15 @@ std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance) {
     for (const std::uint32_t row : column) covered[row] = true;
   }
   return without_redundant(instance, std::move(chosen));
+}
+
+std::vector<std::uint32_t> times_covered(const SetCoverInstance& instance,
+                                         const std::vector<std::size_t>& columns) {
+  std::vector<std::uint32_t> times(instance.row_count, 0);
+  for (const std::size_t c : columns) {
+    for (const std::uint32_t row : instance.columns[c]) ++times[row];
+  }
+  return times;
 }
 
 std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,

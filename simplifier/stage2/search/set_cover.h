@@ -20,6 +20,10 @@ struct SetCoverInstance {
 // column covers stay open. Returns column indices in the order they were taken. Deterministic.
 std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance);
 
+// How many of the columns cover each row.
+std::vector<std::uint32_t> times_covered(const SetCoverInstance& instance,
+                                         const std::vector<std::size_t>& columns);
+
 // The rows that none of the columns covers, in order.
 std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,
                                      const std::vector<std::size_t>& columns);
