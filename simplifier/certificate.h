@@ -20,6 +20,7 @@
 // @endcode
 
 #include "mesh/triangle_mesh.h"
+#include "simplifier/bounds.h"
 #include "simplifier/external_spheres.h"
 #include "simplifier/zones.h"
 #include "spheretree/sphere.h"
@@ -53,13 +54,6 @@ struct CertifyOptions {
   bool volume = true;  // estimate the volume ratio
   int threads = 0;     // 0: all
   Progress progress = {};
-};
-
-// A lower and an upper bound of a length: proved in a Certificate, true up to rounding in a
-// MeshDeviation (baseline/mesh_deviation.h).
-struct Bounds {
-  double lower = 0.0;
-  double upper = 0.0;
 };
 
 // What is proved about a set of spheres, with outward rounding, on the numbers as given.

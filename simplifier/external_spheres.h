@@ -19,13 +19,13 @@
 
 #include "mesh/triangle_mesh.h"
 #include "simplifier/zones.h"
+#include "spheretree/progress.h"
 #include "spheretree/sphere.h"
 
 #include <Eigen/Geometry>
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace spherule {
@@ -36,12 +36,6 @@ enum class ExternalPlacement {
   kRandom,     // the paper's Algorithm 1
   kNone        // no external sphere: S is the box of M
 };
-
-// Called from time to time with the share that is done (0 to 1, or negative where unknown) and a
-// few words on what is being done, which are valid during the call only. The share may begin again
-// where something is done anew, on a coarser grid. It must be thread-safe: worker threads call it,
-// several at once where links are covered or a lower bound is proved.
-using Progress = std::function<void(double share, const char* what)>;
 
 // What the first stage simplifies away.
 struct ExternalOptions {

@@ -5,7 +5,7 @@
 #include "cli/text/json.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_file.h"
-#include "simplifier/external_spheres.h"
+#include "spheretree/progress.h"
 
 #include <cstddef>
 #include <string>

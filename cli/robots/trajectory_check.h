@@ -4,7 +4,7 @@
 #include "cli/robots/check_report.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_file.h"
-#include "simplifier/external_spheres.h"
+#include "spheretree/progress.h"
 
 #include <cstddef>
 #include <vector>

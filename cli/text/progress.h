@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/external_spheres.h"
+#include "spheretree/progress.h"
 
 #include <chrono>
 #include <mutex>

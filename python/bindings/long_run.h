@@ -3,7 +3,7 @@
 
 // Work beside the interpreter: without its lock, and so that Ctrl-C ends it.
 
-#include "simplifier/external_spheres.h"
+#include "spheretree/progress.h"
 
 #include <functional>
 #include <memory>

@@ -21,8 +21,8 @@
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_description.h"
 #include "simplifier/certificate.h"
-#include "simplifier/external_spheres.h"
 #include "simplifier/repair.h"
+#include "spheretree/progress.h"
 
 #include <cstddef>
 #include <optional>

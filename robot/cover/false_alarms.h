@@ -27,11 +27,11 @@
 #include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
+#include "spheretree/progress.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -57,10 +57,8 @@ struct FalseAlarmOptions {
   PairProofs proofs = PairProofs::kBoxes;  // by which pairs are blamed
   // Postures of a pair, the first ones that it refuses, whose gap between the meshes is measured.
   std::size_t gaps = 32;
-  int threads = 0;  // 0: all; the result does not depend on it
-  // Called with the share that is done, negative where it is not known, and a word, from one thread
-  // at a time.
-  std::function<void(double share, const char* what)> progress{};
+  int threads = 0;      // 0: all; the result does not depend on it
+  Progress progress{};  // called by one thread at a time
 };
 
 // Free postures, and how many of them are refused because of spheres.

@@ -15,7 +15,7 @@
 // @endcode
 
 #include "mesh/triangle_mesh.h"
-#include "simplifier/certificate.h"
+#include "simplifier/bounds.h"
 
 #include <cstddef>
 

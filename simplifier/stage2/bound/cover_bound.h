@@ -2,8 +2,8 @@
 #pragma once
 
 #include "mesh/mesh_distance.h"
-#include "simplifier/external_spheres.h"
 #include "simplifier/solid/clearance.h"
+#include "spheretree/progress.h"
 
 #include <Eigen/Core>
 
