@@ -46,18 +46,23 @@ TEST(SurfaceExtent, ACapIsAsWideAsItsGeometrySays) {
 
 TEST(SurfaceExtent, SpheresThatTouchNearAnEdgeAreNoLargerThanTheWayToIt) {
   const Box box;
-  for (const double way : {0.0, 2.0, 10.0, 45.0}) {
+  int judged = 0;
+  for (const double to_edge : {0.0, 2.0, 10.0, 45.0}) {
     for (const double depth : {-0.5, 0.0, 1.0}) {
-      const Vector3d point(50.0, way, depth);
+      SCOPED_TRACE(testing::Message() << to_edge << " " << depth);
+      const Vector3d point(50.0, to_edge, depth);
       const ClearanceAt at = box.clearance(point);
-      if (depth > way || at.away != Vector3d::UnitZ()) continue;
-      EXPECT_TRUE(touched_by(box.clearance, point, at, way, kError)) << way << " " << depth;
-      EXPECT_FALSE(touched_by(box.clearance, point, at, way + 0.5, kError)) << way << " " << depth;
+      // Two of the points on the edge or beside it are as near to the other face, or nearer.
+      if (depth > to_edge || at.away != Vector3d::UnitZ()) continue;
+      ++judged;
+      EXPECT_TRUE(touched_by(box.clearance, point, at, to_edge, kError));
+      EXPECT_FALSE(touched_by(box.clearance, point, at, to_edge + 0.5, kError));
       const double width = cap_width_at(box.clearance, point, at, kError);
-      EXPECT_LE(width, cap_width(way + 0.5, kError));
-      EXPECT_GE(width * 1.4, std::min(cap_width(way, kError), 15.0)) << way << " " << depth;
+      EXPECT_LE(width, cap_width(to_edge + 0.5, kError));
+      EXPECT_GE(width * 1.4, std::min(cap_width(to_edge, kError), 15.0));
     }
   }
+  EXPECT_EQ(judged, 10);
 }
 
 }  // namespace
