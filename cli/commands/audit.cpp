@@ -147,7 +147,7 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
     if (!certificate.covered) std::cout << describe(steps_after_leak(arguments, scale));
     return;
   }
-  std::cout << "repair: " << mended->repair.inflated << " spheres grown, by at most "
+  std::cout << "repair: " << mended->repair.inflated << " spheres inflated, by at most "
             << mended->repair.largest_inflation << ", and " << mended->repair.added
             << " added; these protrude by at most " << mended->repair.max_error << ", all by "
             << mended->repair.protrusion_after << " (before: " << mended->repair.protrusion_before
@@ -213,7 +213,7 @@ int audit(const AuditArguments& arguments) {
       proof.emplace(mesh, options, has_diameter || file.options.contains("min-external"));
       return;
     }
-    // What is added or grown needs a solid to keep to.
+    // What is added or inflated needs a solid to keep to.
     if (options.max_error == 0.0) options.max_error = arguments.max_error.value_or(0.0);
     options.levels.clear();
     SimplifiedSolid solid = simplified_solid(mesh, options);
@@ -269,7 +269,7 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::Option* repair =
       command
           ->add_option("--repair", arguments->repaired,
-                       "Where the spheres go (JSON), grown and with others added so that they "
+                       "Where the spheres go (JSON), inflated and with others added so that they "
                        "cover; exit 0 then says that these do. Without D anywhere it is chosen as "
                        "fit does, E being --max-error or 1 % of the box diagonal")
           ->type_name(kFile);

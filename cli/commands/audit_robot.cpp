@@ -276,7 +276,7 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       ->type_name(kFile);
   command
       ->add_option("--repair", arguments->repaired,
-                   "Where the file goes with spheres grown and added so that they cover every "
+                   "Where the file goes with spheres inflated and added so that they cover every "
                    "link; exit 0 then says that these do")
       ->type_name(kFile);
   arguments->lengths.add_positive(

@@ -55,7 +55,7 @@ void warn_each(const std::string& file, const std::vector<std::string>& warnings
   for (const std::string& warning : warnings) warn(file + ": " + warning);
 }
 
-// Spheres suit thin walls badly: there the count goes with the area, however thin they are.
+// Thin walls need many spheres: there the count goes with the area, however thin they are.
 void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
                         const Simplification& result) {
   const std::size_t count = result.cover.spheres.size();
@@ -67,7 +67,7 @@ void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
   text << arguments.models.front() << ": " << thin << " of " << count
        << " spheres stand where the part is thinner than 2 E, and the mesh has only "
        << mesh.triangles.size()
-       << " triangles: spheres suit thin parts badly. Far fewer would do with --max-error "
+       << " triangles: thin parts need many spheres. Far fewer would do with --max-error "
        << 2.0 * max_error;
   warn(text.str());
 }

@@ -87,7 +87,7 @@ void print_tree(const SphereTree& tree) {
             << report.leaf_count << " leaves, depth " << report.depth << ", branching "
             << report.branching << "\n"
             << "invariants: " << (report.valid ? "all hold" : "broken") << "\n"
-            << "mean growth of a level: " << report.mean_inflation << "\n";
+            << "mean inflation of a level: " << report.mean_inflation << "\n";
   print_sphere("root", tree.sphere(0));
 }
 

@@ -244,9 +244,10 @@ void add_octree(CLI::App& command, SphereArguments& arguments) {
                   command, "--max-error", arguments.octree.max_error,
                   "Halve cubes until their spheres protrude by no more than this"));
   add_surface(command, arguments);
-  add_tree_file(command, arguments,
-                "Where the tree of the method goes; if spheres had to grow, the smallest spheres "
-                "around them take the place of those around cubes");
+  add_tree_file(
+      command, arguments,
+      "Where the tree of the method goes; if spheres had to be inflated, the smallest spheres "
+      "around them take the place of those around cubes");
 }
 
 MadeSpheres run_octree(const TriangleMesh& mesh, const SphereArguments& arguments,

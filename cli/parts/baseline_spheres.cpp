@@ -100,7 +100,7 @@ int run_method(const SphereBaseline& method, const SphereArguments& arguments) {
   print(arguments, figures, result, {{"method", making}, {"certify", certifying}});
   if (result.certificate.covered) return kYes;
   tell(arguments.output + ": the spheres are not proved to cover" +
-       (arguments.conservative ? "" : "; --conservative grows them"));
+       (arguments.conservative ? "" : "; --conservative inflates them"));
   return kNo;
 }
 

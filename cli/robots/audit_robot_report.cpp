@@ -115,7 +115,7 @@ void put_repair(std::ostream& out, const RobotAuditReport& report) {
   out << "repaired into " << one_line(report.repaired_file) << "\n";
   for (const LinkRepair& link : report.repair->links) {
     out << "  " << one_line(link.link) << ": " << link.repair.inflated
-        << " spheres grown, by at most " << in_mm(link.repair.largest_inflation) << ", and "
+        << " spheres inflated, by at most " << in_mm(link.repair.largest_inflation) << ", and "
         << link.repair.added << " added; these protrude by at most " << in_mm(link.repair.max_error)
         << ", all by " << in_mm(link.repair.protrusion_after)
         << " (before: " << in_mm(link.repair.protrusion_before) << "); "
