@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands/command.h"
+#include "cli/files/in_file.h"
 #include "cli/files/interruption.h"
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
@@ -36,16 +37,6 @@
 
 namespace spherule {
 namespace {
-
-// Runs what depends on the options in the file, and blames the file for what is wrong with them.
-template <typename Use>
-auto blaming_file(const AuditArguments& arguments, Use use) {
-  try {
-    return use();
-  } catch (const Error& error) {
-    throw Error(arguments.spheres, error.what());
-  }
-}
 
 std::string name_of(const std::optional<ExternalSpheres>& external) {
   if (!external) return "the mesh and its inside";
@@ -158,7 +149,8 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
 // Reads as the file says, or as the command line does; lengths of the command line become those of
 // the output.
 ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& file) {
-  const ModelReadOptions stored = blaming_file(arguments, [&] { return stored_reading(file); });
+  const ModelReadOptions stored =
+      blame_file(arguments.spheres, [&] { return stored_reading(file); });
   UnitArguments unit = arguments.unit;
   take_stored_unit(arguments.spheres, file, stored, unit);
   const ModelUnit found = [&] {
@@ -196,7 +188,7 @@ int audit(const AuditArguments& arguments) {
     throw Error(arguments.spheres, "is of one body, but several models are named");
   }
   SimplifyOptions options =
-      blaming_file(arguments, [&] { return options_from_record(file.options); });
+      blame_file(arguments.spheres, [&] { return options_from_record(file.options); });
   const ModelReadOptions reading = reading_of(arguments, file);
   ProgressBar bar;
   bar.announce("reading");
@@ -221,7 +213,11 @@ int audit(const AuditArguments& arguments) {
     proof.emplace(options, std::move(solid.external));
     has_larger_diameter = solid.larger_diameter;
   };
-  has_diameter ? place() : blaming_file(arguments, place);
+  if (has_diameter) {
+    place();
+  } else {
+    blame_file(arguments.spheres, place);
+  }
   const std::optional<ExternalSpheres>& external = proof->external();
   const Certificate certificate = certify(mesh, file.spheres, proof->options());
   std::optional<Repaired> mended;

@@ -97,11 +97,7 @@ void review_turns(const CheckArguments& arguments, const RobotModel& robot,
          "--continuous shortest proves");
     return;
   }
-  try {
-    shortest.require();
-  } catch (const Error& error) {
-    throw Error(arguments.urdf, error.what());
-  }
+  blame_file(arguments.urdf, [&] { shortest.require(); });
   const TurningMotions half = half_a_turn(robot, trajectory);
   if (half.count == 0) return;
   warn(file + ": of " + std::to_string(half.count) + (half.count == 1 ? " motion" : " motions") +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands/command.h"
+#include "cli/files/in_file.h"
 #include "cli/files/interruption.h"
 #include "cli/files/model_file.h"
 #include "cli/files/output.h"
@@ -180,7 +181,7 @@ int fit(FitArguments& arguments) {
   const Simplification result = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return blaming_named_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
+    return blame_named_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
   }();
 
   // First of all what was requested and is proved.

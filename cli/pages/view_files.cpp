@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/view_files.h"
 
+#include "cli/files/in_file.h"
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "cli/files/recognize.h"
@@ -16,16 +17,6 @@
 
 namespace spherule {
 namespace {
-
-// Runs what takes values out of JSON, and blames the file where they are of a wrong type.
-template <typename Use>
-auto reading(const std::string& file, Use use) {
-  try {
-    return use();
-  } catch (const Json::exception& error) {
-    throw Error(file, error.what());
-  }
-}
 
 Eigen::Vector3d point_of(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
@@ -97,7 +88,7 @@ std::string describe_cover(const Json& certificate) {
 }
 
 std::vector<Sphere> spheres_of(const Json& list, const std::string& file) {
-  return reading(file, [&] {
+  return blame_file<Json::exception>(file, [&] {
     std::vector<Sphere> spheres;
     for (const Json& entry : list) {
       const Sphere sphere{point_of(entry.at("center")), entry.at("radius").get<double>()};
@@ -109,7 +100,7 @@ std::vector<Sphere> spheres_of(const Json& list, const std::string& file) {
 }
 
 std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file) {
-  return reading(file, [&] {
+  return blame_file<Json::exception>(file, [&] {
     std::vector<LeakPoint> leaks;
     const Json& deepest = certificate.at("deepest_leak");
     const Json& depth = certificate.at("uncovered_depth").at(0);
@@ -141,7 +132,7 @@ std::vector<ViewItem> view_items(const std::string& file, const std::string& uni
   }
   if (kind == FileKind::kTree) return {{.name = file, .parts = {{load_tree(file)}}}};
   const auto document = json_in(file);
-  return reading(file, [&]() -> std::vector<ViewItem> {
+  return blame_file<Json::exception>(file, [&]() -> std::vector<ViewItem> {
     const Json& json = document.root();
     if (json.is_object() && json.value("format", "") == "spherule-report") {
       return report_items(json, file);

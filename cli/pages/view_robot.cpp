@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/view_robot.h"
 
+#include "cli/files/in_file.h"
 #include "cli/files/recognize.h"
 #include "cli/options/robot_options.h"
 #include "cli/pages/view_encoding.h"
@@ -241,12 +242,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
       continue;
     }
     if (const auto document = json_in(file); is_by_links(document.root())) {
-      try {
-        std::vector<ViewItem> items = report_items(robot, document.root(), file);
-        std::move(items.begin(), items.end(), std::back_inserter(scene.items));
-      } catch (const Json::exception& error) {
-        throw Error(file, error.what());
-      }
+      std::vector<ViewItem> items = blame_file<Json::exception>(
+          file, [&] { return report_items(robot, document.root(), file); });
+      std::move(items.begin(), items.end(), std::back_inserter(scene.items));
       continue;
     }
     const LinkGeometry geometry = geometry_named(options.geometry.front());

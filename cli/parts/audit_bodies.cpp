@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parts/audit_bodies.h"
 
+#include "cli/files/in_file.h"
 #include "cli/files/model_bodies.h"
 #include "cli/parts/audit_proof.h"
 #include "cli/text/exit_code.h"
@@ -44,12 +45,10 @@ ModelBodies read(const AuditArguments& arguments, const SphereFile& file) {
   ModelReadOptions reading;
   UnitArguments unit = arguments.unit;
   bool split = false;
-  try {
+  blame_file(arguments.spheres, [&] {
     reading = stored_reading(file);
     split = flag_of(file, "bodies");
-  } catch (const Error& error) {
-    throw Error(arguments.spheres, error.what());
-  }
+  });
   take_stored_unit(arguments.spheres, file, reading, unit);
   reading.units = unit.units;
   const std::vector<ModelUnit> units = model_units(arguments.models, unit);
@@ -94,12 +93,9 @@ class Auditor {
   BodyVerdict proved(std::size_t body) const {
     const BodyRecord& record = file_.bodies[body];
     const TriangleMesh& mesh = model_.bodies[body].mesh;
-    SimplifyOptions options;
-    try {
-      options = options_from_record(record.options);
-    } catch (const Error& error) {
-      throw Error(arguments_.spheres, record.name + ": " + error.what());
-    }
+    SimplifyOptions options = blame_file(arguments_.spheres, [&] {
+      return blame_file(record.name, [&] { return options_from_record(record.options); });
+    });
     options.threads = arguments_.threads;
     const bool has_diameter = take_min_external(arguments_.min_external, options) ||
                               record.options.contains("min-external");

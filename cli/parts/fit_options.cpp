@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parts/fit_options.h"
 
+#include "cli/files/in_file.h"
 #include "cli/help/command_specification.h"
 #include "cli/options/search_options.h"
 #include "simplifier/zones.h"
@@ -149,9 +150,9 @@ SimplifyOptions fit_options(FitArguments& arguments, const LengthContext& contex
   if (!arguments.tool.empty()) {
     const SphereFile tool = load_spheres(arguments.tool);
     const double diameter =
-        blaming_named_file(arguments.tool, "tool", [&] { return tool_diameter(tool.spheres); });
+        blame_named_file(arguments.tool, "tool", [&] { return tool_diameter(tool.spheres); });
     const std::string units =
-        blaming_named_file(arguments.tool, "units", [&] { return stored_reading(tool).units; });
+        blame_named_file(arguments.tool, "units", [&] { return stored_reading(tool).units; });
     options.min_external_diameter =
         converted({diameter, unit_named(units)}, "--tool " + arguments.tool, context);
   }

@@ -8,10 +8,8 @@
 #include "cli/options/shard.h"
 #include "cli/parts/stage2_method.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -48,17 +46,5 @@ void add_fit_options(CLI::App& command, FitArguments& arguments);
 // The options of the fit, and in `arguments.reading` those of reading but for the scale, with
 // lengths converted to output units and what files of options say filled in. Throws Error.
 SimplifyOptions fit_options(FitArguments& arguments, const LengthContext& context);
-
-// Runs what depends on a file that an option names, and blames that file for what is wrong with
-// `subject`.
-template <typename Use>
-auto blaming_named_file(const std::string& file, std::string_view subject, Use use) {
-  try {
-    return use();
-  } catch (const Error& error) {
-    if (file.empty() || !error.subject().starts_with(subject)) throw;
-    throw Error(file, error.what());
-  }
-}
 
 }  // namespace spherule
