@@ -144,80 +144,116 @@ bool has_shrinking_buffers(const RobotSpheres& spheres) {
                      [](const auto& buffer) { return buffer.second < 0.0; });
 }
 
-int audit(const AuditRobotArguments& arguments) {
-  const bool mend = !arguments.repaired.empty();
-  check_outputs({arguments.repaired, arguments.view},
-                {arguments.urdf, arguments.spheres, arguments.poses.file, arguments.pairs.srdf,
-                 arguments.pairs.pairs});
+// What is audited, read and checked.
+struct AuditInput {
+  RobotDescription robot;
+  SphereInput given;
+  RobotAuditOptions options;
+  bool is_shrunk;  // by buffers below 0
+
+  const RobotSpheres& spheres() const { return given.file.spheres; }
+};
+
+AuditInput read_input(const AuditRobotArguments& arguments) {
   const LinkGeometry geometry = geometry_named(arguments.geometry);
-  const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
+  RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
                                       {.link = arguments.link, .level = arguments.level});
-  RobotAuditReport report{.file = std::move(given.file),
-                          .audit = {},
-                          .repaired_file = arguments.repaired,
-                          .repair = std::nullopt,
-                          .pairs = std::nullopt};
-  const RobotSpheres& spheres = report.file.spheres;
+  const RobotSpheres& spheres = given.file.spheres;
   require_known_links(robot.model, arguments.spheres, spheres, arguments.ignores_unknown_links);
   const bool is_shrunk = has_shrinking_buffers(spheres);
-  if (mend) check_repair(arguments, report.file, is_shrunk);
+  if (!arguments.repaired.empty()) check_repair(arguments, given.file, is_shrunk);
   RobotAuditOptions options{.geometry = geometry,
                             .min_external_diameter = arguments.min_external.value_or(0.0),
                             .configurations = configurations_of(arguments.poses, robot.model),
                             .threads = arguments.threads};
   if (arguments.max_error) options.max_error = *arguments.max_error;
+  return {.robot = std::move(robot),
+          .given = std::move(given),
+          .options = std::move(options),
+          .is_shrunk = is_shrunk};
+}
+
+// Certifies the spheres, and repairs them where that was requested.
+RobotAuditReport audited(const AuditRobotArguments& arguments, const AuditInput& input) {
+  RobotAuditReport report{.file = input.given.file,
+                          .audit = {},
+                          .repaired_file = arguments.repaired,
+                          .repair = std::nullopt,
+                          .pairs = std::nullopt};
+  const RobotSpheres& spheres = input.spheres();
   {
     ProgressBar bar;
+    RobotAuditOptions options = input.options;
     options.progress = bar.callback();
     in_file(arguments.urdf, [&] {
-      report.audit = audit_robot(robot, shrunk_by_buffers(spheres), options);
-      if (!mend) return;
-      report.repair = repair_robot(robot, spheres.links,
-                                   {.geometry = geometry,
+      report.audit = audit_robot(input.robot, shrunk_by_buffers(spheres), options);
+      if (arguments.repaired.empty()) return;
+      report.repair = repair_robot(input.robot, spheres.links,
+                                   {.geometry = options.geometry,
                                     .max_error = arguments.max_error.value_or(0.0),
                                     .threads = arguments.threads,
                                     .progress = options.progress});
     });
   }
   if (!arguments.pairs.is_empty()) {
-    report.pairs = pair_kinds(robot, spheres, geometry, arguments.pairs, arguments.threads);
+    report.pairs = pair_kinds(input.robot, spheres, input.options.geometry, arguments.pairs,
+                              arguments.threads);
   }
-  if (mend) {
-    write_uninterrupted([&] { write_repaired(arguments, report); });
-  }
-  const bool needs_json = arguments.json || (!arguments.view.empty() && !mend);
+  return report;
+}
+
+void print(const AuditRobotArguments& arguments, const AuditInput& input,
+           const RobotAuditReport& report) {
+  const bool needs_json = arguments.json || (!arguments.view.empty() && !report.repair);
   const Json json = needs_json ? audit_json(report) : Json();
   std::cout << (arguments.json ? to_text(json) : audit_table(report));
-  if (!arguments.view.empty()) {
-    write_page(arguments.view, page_of(arguments, robot, report, json));
-    if (!arguments.json) std::cout << page_line(arguments.view);
-  }
+  if (arguments.view.empty()) return;
+  write_page(arguments.view, page_of(arguments, input.robot, report, json));
+  if (!arguments.json) std::cout << page_line(arguments.view);
+}
+
+void warn_of(const AuditRobotArguments& arguments, const AuditInput& input,
+             const RobotAuditReport& report) {
   for (const LinkAudit& link : report.audit.links) warn_of_link(link.link, link.warnings);
   if (report.repair) {
     for (const LinkRepair& link : report.repair->links) warn_of_link(link.link, link.warnings);
   }
   if (report.pairs) {
-    for (const std::string& warning : wrong_pairs(report.pairs->judgement, robot.model)) {
+    for (const std::string& warning : wrong_pairs(report.pairs->judgement, input.robot.model)) {
       warn(warning);
     }
   }
-  if (is_shrunk) {
+  if (input.is_shrunk) {
     tell(arguments.spheres + ": spheres were certified as its buffers below 0 shrink them");
   }
-  if (mend) {
-    const std::vector<LinkRepair>& links = report.repair->links;
-    return std::all_of(links.begin(), links.end(),
-                       [](const LinkRepair& link) { return link.certificate.covered; })
-               ? kYes
-               : kNo;
+}
+
+// Of the repaired spheres, where they were requested.
+bool is_covered(const AuditRobotArguments& arguments, const RobotAuditReport& report) {
+  if (report.repair) {
+    return std::ranges::all_of(report.repair->links,
+                               [](const LinkRepair& link) { return link.certificate.covered; });
   }
-  const RobotAudit& result = report.audit;
-  if (arguments.poses.file.empty() ? result.links_covered : result.configurations_covered)
-    return kYes;
-  if (!arguments.json) {
-    const bool is_mendable = is_written(report.file.format) && !is_shrunk;
-    std::cout << describe(steps_after_leak(arguments, given.names_links, is_mendable));
+  return arguments.poses.file.empty() ? report.audit.links_covered
+                                      : report.audit.configurations_covered;
+}
+
+int audit(const AuditRobotArguments& arguments) {
+  check_outputs({arguments.repaired, arguments.view},
+                {arguments.urdf, arguments.spheres, arguments.poses.file, arguments.pairs.srdf,
+                 arguments.pairs.pairs});
+  const AuditInput input = read_input(arguments);
+  const RobotAuditReport report = audited(arguments, input);
+  if (report.repair) {
+    write_uninterrupted([&] { write_repaired(arguments, report); });
+  }
+  print(arguments, input, report);
+  warn_of(arguments, input, report);
+  if (is_covered(arguments, report)) return kYes;
+  if (!report.repair && !arguments.json) {
+    const bool is_mendable = is_written(report.file.format) && !input.is_shrunk;
+    std::cout << describe(steps_after_leak(arguments, input.given.names_links, is_mendable));
   }
   return kNo;
 }

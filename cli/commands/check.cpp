@@ -15,6 +15,7 @@
 #include "cli/robots/sphere_input.h"
 #include "cli/robots/trajectory_check.h"
 #include "cli/robots/trajectory_input.h"
+#include "cli/robots/turn_review.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/message.h"
 #include "cli/text/next_step.h"
@@ -23,7 +24,6 @@
 #include "robot/check/scene_setup.h"
 #include "robot/cover/goal_cover.h"
 #include "robot/files/urdf.h"
-#include "robot/model/shortest_motion.h"
 #include "robot/pairs/link_pairs_file.h"
 #include "spheretree/error.h"
 
@@ -34,7 +34,6 @@
 #include <cstddef>
 #include <iostream>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,45 +66,6 @@ struct CheckArguments {
     return continuous == kAsGiven ? ContinuousMotion::kAsGiven : ContinuousMotion::kShortest;
   }
 };
-
-// The same trajectory with each configuration where the motion to it ends.
-Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory) {
-  const ShortestMotion shortest(robot);
-  Trajectory ends = trajectory;
-  std::vector<double> room;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    const std::span<const double> end =
-        shortest.end_of(trajectory.configuration(i - 1), trajectory.configuration(i), room);
-    std::copy(end.begin(), end.end(),
-              ends.positions.begin() + static_cast<std::ptrdiff_t>(i * trajectory.width));
-  }
-  return ends;
-}
-
-// Which motions of continuous joints are proved, before that is done.
-void review_turns(const CheckArguments& arguments, const RobotModel& robot,
-                  const Trajectory& trajectory, CheckReport& report) {
-  const ShortestMotion shortest(robot);
-  if (!shortest.has_turns()) return;
-  report.continuous = arguments.motion();
-  report.turning = more_than_half_a_turn(robot, trajectory);
-  const std::string& file = arguments.trajectory.file;
-  if (report.continuous == ContinuousMotion::kAsGiven) {
-    if (report.turning.count == 0) return;
-    warn(file + ": " + describe(report.turning, arguments.trajectory.is_in_degrees) +
-         "; that way is proved: OMPL and many controllers go the shorter one, which "
-         "--continuous shortest proves");
-    return;
-  }
-  blame_file(arguments.urdf, [&] { shortest.require(); });
-  const TurningMotions half = half_a_turn(robot, trajectory);
-  if (half.count == 0) return;
-  warn(file + ": of " + std::to_string(half.count) + (half.count == 1 ? " motion" : " motions") +
-       " no way is clearly the shorter one, because a continuous joint turns by half a turn, the "
-       "first from line " +
-       std::to_string(half.line) + " to line " + std::to_string(half.to_line) + ": joint " +
-       half.joint + "; a controller may go the other way than what is proved");
-}
 
 // Where bodies of the robot touch all the time: what to do about it, for a person.
 std::string advice(const CheckArguments& arguments, const CheckReport& report) {
@@ -196,82 +156,186 @@ void warn_of_far_obstacles(const std::string& file, const RobotScene& scene) {
   }
 }
 
-int check(const CheckArguments& arguments) {
-  check_outputs({arguments.view}, {arguments.urdf, arguments.scene, arguments.trajectory.file,
-                                   arguments.spheres, arguments.pairs});
+// What the files say.
+struct CheckInput {
+  RobotCoverOptions options;  // with the geometry
+  RobotDescription robot;
+  SceneDescription scene;
+  TrajectoryInput trajectory;
+  TurnReview turns;
+};
+
+CheckInput read_input(const CheckArguments& arguments) {
   RobotCoverOptions options = arguments.cover;
   options.geometry = geometry_named(arguments.geometry);
-  const RobotDescription robot = read_checked_robot(arguments, options.geometry);
-  const SceneDescription scene = read_scene(arguments.scene);
-  const TrajectoryInput input = read_configurations(arguments.trajectory, robot.model);
-  const bool has_motions = input.has_motions;
-  if (!arguments.view.empty() && input.trajectory.size() == 0) {
+  RobotDescription robot = read_checked_robot(arguments, options.geometry);
+  const RobotModel& model = robot.model;
+  SceneDescription scene = read_scene(arguments.scene);
+  TrajectoryInput input = read_configurations(arguments.trajectory, model);
+  const Trajectory& trajectory = input.trajectory;
+  if (!arguments.view.empty() && trajectory.size() == 0) {
     throw Error("--view", "there is nothing to show: this shard of the trajectory is empty");
   }
-  CheckReport seen;
+  TurnReview turns;
   if (arguments.trajectory.has_motions) {
-    require_provable(robot.model, arguments.trajectory, input.trajectory);
-    if (has_motions) review_turns(arguments, robot.model, input.trajectory, seen);
+    require_provable(model, arguments.trajectory, trajectory);
+    if (input.has_motions) {
+      turns =
+          review_turns(arguments.urdf, arguments.trajectory, arguments.motion(), model, trajectory);
+    }
     if (arguments.motion() == ContinuousMotion::kShortest) {
-      require_provable(robot.model, arguments.trajectory,
-                       ends_of_motions(robot.model, input.trajectory));
+      require_provable(model, arguments.trajectory, ends_of_motions(model, trajectory));
     }
   }
   require_resolution(arguments.resolution);
+  return {.options = std::move(options),
+          .robot = std::move(robot),
+          .scene = std::move(scene),
+          .trajectory = std::move(input),
+          .turns = std::move(turns)};
+}
 
-  SphereRobot spheres = arguments.spheres.empty()
-                            ? cover_sphere_robot(arguments.urdf, robot, options)
-                            : read_sphere_robot(arguments.spheres, robot, options.geometry,
-                                                arguments.ignores_unknown_links);
+// What is queried.
+struct CheckSetup {
+  PreparedScene prepared;
+  std::shared_ptr<const LinkPairs> proofs;  // if there are any
+  bool is_whole;                            // no part of the robot was left out
+};
+
+CheckSetup set_up(const CheckArguments& arguments, const CheckInput& input) {
+  SphereRobot spheres =
+      arguments.spheres.empty()
+          ? cover_sphere_robot(arguments.urdf, input.robot, input.options)
+          : read_sphere_robot(arguments.spheres, input.robot, input.options.geometry,
+                              arguments.ignores_unknown_links);
   const bool is_whole = spheres.is_whole;
-  PreparedScene prepared =
-      in_file(arguments.scene, [&] { return prepare(std::move(spheres), scene, options); });
-  warn_of_far_obstacles(arguments.scene, prepared.scene);
-  std::shared_ptr<const LinkPairs> proofs;
+  CheckSetup setup{
+      .prepared = in_file(arguments.scene,
+                          [&] { return prepare(std::move(spheres), input.scene, input.options); }),
+      .proofs = nullptr,
+      .is_whole = is_whole};
+  warn_of_far_obstacles(arguments.scene, setup.prepared.scene);
   if (!arguments.pairs.empty()) {
-    proofs = std::make_shared<const LinkPairs>(
-        load_link_pairs(arguments.pairs, robot.model, covered_bodies(robot, options)));
-    prepared.scene.set_link_pairs(proofs);
+    setup.proofs = std::make_shared<const LinkPairs>(load_link_pairs(
+        arguments.pairs, input.robot.model, covered_bodies(input.robot, input.options)));
+    setup.prepared.scene.set_link_pairs(setup.proofs);
   }
+  return setup;
+}
 
-  const RobotChecker checker = in_file(arguments.scene, [&] { return prepared.scene.snapshot(); });
+TrajectoryFindings check_trajectory(const CheckArguments& arguments, const CheckInput& input,
+                                    const CheckSetup& setup, const RobotChecker& checker) {
   ProgressBar bar;
   const TrajectoryCheckOptions how{
-      .explained = proofs != nullptr ? explained_of(input) : 0,
-      .threads = options.threads,
+      .explained = setup.proofs != nullptr ? explained_of(input.trajectory) : 0,
+      .threads = input.options.threads,
       .progress = bar.callback(),
       .edge = {.resolution = arguments.resolution, .continuous = arguments.motion()},
-      .configurations_in_all = input.of};
-  CheckReport report = has_motions ? check_motions(checker, input.trajectory, how)
-                                   : check_configurations(checker, input.trajectory, how);
+      .configurations_in_all = input.trajectory.of};
+  const Trajectory& trajectory = input.trajectory.trajectory;
+  TrajectoryFindings found = input.trajectory.has_motions
+                                 ? check_motions(checker, trajectory, how)
+                                 : check_configurations(checker, trajectory, how);
   bar.clear();
-  report.is_whole = is_whole;
-  report.given_spheres = arguments.spheres;
-  report.configurations = input.own;
-  report.shard = arguments.trajectory.shard;
-  report.continuous = seen.continuous;
-  report.turning = seen.turning;
-  report.outside = input.outside;
-  report.enforces_limits = arguments.enforces_limits;
-  report.is_in_degrees = arguments.trajectory.is_in_degrees;
-  if (proofs != nullptr) {
+  if (setup.proofs != nullptr) {
     const RobotModel& model = checker.robot();
-    report.tell_kinds(model, pair_statuses(model, prepared.scene.allowed_collisions(), proofs));
+    found.tell_kinds(model,
+                     pair_statuses(model, setup.prepared.scene.allowed_collisions(), setup.proofs));
   }
+  return found;
+}
+
+int check(const CheckArguments& arguments) {
+  check_outputs({arguments.view}, {arguments.urdf, arguments.scene, arguments.trajectory.file,
+                                   arguments.spheres, arguments.pairs});
+  const CheckInput input = read_input(arguments);
+  const CheckSetup setup = set_up(arguments, input);
+  const RobotChecker checker =
+      in_file(arguments.scene, [&] { return setup.prepared.scene.snapshot(); });
+  const CheckReport report{.found = check_trajectory(arguments, input, setup, checker),
+                           .configurations = input.trajectory.own,
+                           .given_spheres = arguments.spheres,
+                           .shard = arguments.trajectory.shard,
+                           .is_whole = setup.is_whole,
+                           .turns = input.turns,
+                           .outside = input.trajectory.outside,
+                           .enforces_limits = arguments.enforces_limits,
+                           .is_in_degrees = arguments.trajectory.is_in_degrees};
   if (!arguments.view.empty()) {
     write_checked(arguments,
-                  {.robot = robot,
+                  {.robot = input.robot,
                    .geometry = arguments.geometry,
-                   .scene = scene,
+                   .scene = input.scene,
                    .checker = checker,
-                   .trajectory = input.trajectory,
+                   .trajectory = input.trajectory.trajectory,
                    .report = report},
-                  has_motions);
+                  input.trajectory.has_motions);
   }
   std::cout << (arguments.json ? check_json(report)
                                : check_table(report) + advice(arguments, report));
   if (!arguments.view.empty() && !arguments.json) std::cout << page_line(arguments.view);
   return report.is_free() ? kYes : kNo;
+}
+
+void add_files(CLI::App& command, CheckArguments& arguments) {
+  command.add_option("urdf", arguments.urdf, "URDF of the robot")->required()->type_name(kFile);
+  command.add_option("scene", arguments.scene, "Scene, JSON (docs/scene-file.md)")
+      ->required()
+      ->type_name(kFile);
+  command
+      .add_option("trajectory", arguments.trajectory.file,
+                  "Configurations, one a line, with or without a line of joint names")
+      ->required()
+      ->type_name(kFile);
+}
+
+void add_motions(CLI::App& command, CheckArguments& arguments) {
+  CLI::Option* edges = command.add_flag("--edges", arguments.trajectory.has_motions,
+                                        "Prove every motion from one configuration to the next");
+  command
+      .add_option("--continuous", arguments.continuous,
+                  "The way that continuous joints turn from one configuration to the next: "
+                  "as-given, straight from number to number (default), or shortest, by at most "
+                  "half a turn, as OMPL's SO2 goes")
+      ->check(CLI::IsMember({kAsGiven, kShortest}))
+      ->needs(edges);
+  add_degrees_flag(command, "Angles of the trajectory are in degrees, lengths in metres",
+                   arguments.trajectory);
+  command.add_flag("--enforce-limits", arguments.enforces_limits,
+                   "Configurations outside the joint limits are not free (default: a warning)");
+  add_shard_option(command,
+                   "Only the I-th of N equal parts of the trajectory, for batch systems: counts of "
+                   "all parts add up to those of the whole",
+                   arguments.trajectory.shard);
+  arguments.lengths
+      .add(command, "--resolution", arguments.resolution,
+           "How closely motions are examined, in metres (default 1e-4)")
+      ->needs(edges);
+}
+
+void add_spheres(CLI::App& command, CheckArguments& arguments) {
+  command
+      .add_option("--spheres", arguments.spheres,
+                  "Spheres of the robot, in any format that audit-robot reads, taken as they are: "
+                  "audit-robot proves whether they cover (default: cover the robot first)")
+      ->type_name(kFile);
+  add_unknown_links_flag(command, arguments.ignores_unknown_links);
+  command
+      .add_option("--pairs", arguments.pairs,
+                  "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
+                  "without padding): where two are proved free their spheres are not tested")
+      ->type_name(kFile);
+  arguments.lengths.add_positive(
+      command, "--max-error", arguments.cover.max_error,
+      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
+  command
+      .add_option("--effort", arguments.cover.effort,
+                  "Without --spheres: how long to search for fewer spheres, as fit has it")
+      ->check(CLI::NonNegativeNumber);
+  add_geometry_option(command, "Which of the robot's geometries stands for it (default: collision)",
+                      arguments.geometry);
+  add_package_option(command, arguments.packages);
+  add_threads_option(command, arguments.cover.threads);
 }
 
 }  // namespace
@@ -281,59 +345,9 @@ void add_check(CLI::App& app, int& exit_code) {
       "check",
       "Check a robot along a trajectory in a scene; exit 0 free, 1 collision or not proved");
   auto arguments = std::make_shared<CheckArguments>();
-  command->add_option("urdf", arguments->urdf, "URDF of the robot")->required()->type_name(kFile);
-  command->add_option("scene", arguments->scene, "Scene, JSON (docs/scene-file.md)")
-      ->required()
-      ->type_name(kFile);
-  command
-      ->add_option("trajectory", arguments->trajectory.file,
-                   "Configurations, one a line, with or without a line of joint names")
-      ->required()
-      ->type_name(kFile);
-  CLI::Option* edges = command->add_flag("--edges", arguments->trajectory.has_motions,
-                                         "Prove every motion from one configuration to the next");
-  command
-      ->add_option("--continuous", arguments->continuous,
-                   "The way that continuous joints turn from one configuration to the next: "
-                   "as-given, straight from number to number (default), or shortest, by at most "
-                   "half a turn, as OMPL's SO2 goes")
-      ->check(CLI::IsMember({kAsGiven, kShortest}))
-      ->needs(edges);
-  add_degrees_flag(*command, "Angles of the trajectory are in degrees, lengths in metres",
-                   arguments->trajectory);
-  command->add_flag("--enforce-limits", arguments->enforces_limits,
-                    "Configurations outside the joint limits are not free (default: a warning)");
-  add_shard_option(*command,
-                   "Only the I-th of N equal parts of the trajectory, for batch systems: counts of "
-                   "all parts add up to those of the whole",
-                   arguments->trajectory.shard);
-  arguments->lengths
-      .add(*command, "--resolution", arguments->resolution,
-           "How closely motions are examined, in metres (default 1e-4)")
-      ->needs(edges);
-  command
-      ->add_option("--spheres", arguments->spheres,
-                   "Spheres of the robot, in any format that audit-robot reads, taken as they are: "
-                   "audit-robot proves whether they cover (default: cover the robot first)")
-      ->type_name(kFile);
-  add_unknown_links_flag(*command, arguments->ignores_unknown_links);
-  command
-      ->add_option("--pairs", arguments->pairs,
-                   "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
-                   "without padding): where two are proved free their spheres are not tested")
-      ->type_name(kFile);
-  arguments->lengths.add_positive(
-      *command, "--max-error", arguments->cover.max_error,
-      "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
-  command
-      ->add_option("--effort", arguments->cover.effort,
-                   "Without --spheres: how long to search for fewer spheres, as fit has it")
-      ->check(CLI::NonNegativeNumber);
-  add_geometry_option(*command,
-                      "Which of the robot's geometries stands for it (default: collision)",
-                      arguments->geometry);
-  add_package_option(*command, arguments->packages);
-  add_threads_option(*command, arguments->cover.threads);
+  add_files(*command, *arguments);
+  add_motions(*command, *arguments);
+  add_spheres(*command, *arguments);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command
       ->add_option("--view", arguments->view,

@@ -137,7 +137,7 @@ class Recording {
   char motions_between(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
     char worst = is_outside_limits(begin) ? 'l' : 'f';
     for (std::size_t i = begin; i < end; ++i) {
-      const EdgeResult& motion = report_.verdicts.motions[i];
+      const EdgeResult& motion = report_.found.verdicts.motions[i];
       if (is_outside_limits(i + 1)) worst = 'l';
       if (motion.verdict == Verdict::kUnknown && worst == 'f') worst = 'u';
       if (motion.verdict != Verdict::kCollision) continue;
@@ -155,7 +155,7 @@ class Recording {
   }
 
   char configurations_between(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
-    const auto& free = report_.verdicts.free;
+    const auto& free = report_.found.verdicts.free;
     char worst = is_outside_limits(begin) ? 'l' : 'f';
     if (free[begin] == 0) return 'c';
     for (std::size_t i = begin + 1; i < end; ++i) {

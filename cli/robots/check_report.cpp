@@ -28,11 +28,12 @@ const char* kind_of(const CheckedBody& body) {
 }
 
 const TouchingPair* deepest(const CheckReport& report) {
-  const auto found = std::max_element(
-      report.pairs.begin(), report.pairs.end(), [](const TouchingPair& a, const TouchingPair& b) {
-        return a.worst.contact.overlap_depth < b.worst.contact.overlap_depth;
-      });
-  return found == report.pairs.end() ? nullptr : &*found;
+  const auto found =
+      std::max_element(report.found.pairs.begin(), report.found.pairs.end(),
+                       [](const TouchingPair& a, const TouchingPair& b) {
+                         return a.worst.contact.overlap_depth < b.worst.contact.overlap_depth;
+                       });
+  return found == report.found.pairs.end() ? nullptr : &*found;
 }
 
 const char* name_of(ContinuousMotion continuous) {
@@ -51,15 +52,15 @@ std::string angle_text(double radians, bool in_degrees) {
 
 // Which motions of continuous joints were proved.
 void put_continuous(std::ostream& out, const CheckReport& report) {
-  if (!report.continuous) return;
-  const TurningMotions& turning = report.turning;
+  if (!report.turns.continuous) return;
+  const TurningMotions& turning = report.turns.turning;
   out << "continuous joints turn "
-      << (report.continuous == ContinuousMotion::kAsGiven
+      << (report.turns.continuous == ContinuousMotion::kAsGiven
               ? "as given, straight from number to number"
               : "the shorter way, by at most half a turn");
   if (turning.count > 0) {
     out << "; " << describe(turning, report.is_in_degrees);
-    if (report.continuous == ContinuousMotion::kShortest) {
+    if (report.turns.continuous == ContinuousMotion::kShortest) {
       out << " as given, here by " << angle_text(turning.shorter, report.is_in_degrees);
     }
   }
@@ -157,11 +158,11 @@ std::string overlap_in_mm(double metres) {
 
 // Pairs whose spheres overlap though they are free, a line each.
 void put_proved_free(std::ostream& out, const CheckReport& report) {
-  for (const TouchingPair& pair : report.proved_free) {
+  for (const TouchingPair& pair : report.found.proved_free) {
     const CheckedContact& worst = pair.worst.contact;
     out << "free though spheres overlap: " << one_line(worst.first.name) << " and "
         << one_line(worst.second.name) << (pair.kind.empty() ? "" : " (" + pair.kind + ")")
-        << ", in " << pair.count << " of " << report.explained << " configurations, up to "
+        << ", in " << pair.count << " of " << report.found.explained << " configurations, up to "
         << overlap_in_mm(worst.overlap_depth) << " mm\n";
   }
 }
@@ -179,7 +180,7 @@ Json to_json(const TouchingPair& pair) {
 }  // namespace
 
 const char* verdict_of(const CheckReport& report) {
-  if (report.colliding > 0) return "collision";
+  if (report.found.colliding > 0) return "collision";
   if (report.is_out_of_bounds()) return "outside limits";
   return report.is_free() ? "free" : "not proved";
 }
@@ -189,23 +190,21 @@ std::optional<std::size_t> PairIndex::find_or_add(const CheckedContact& contact,
   return is_new ? std::nullopt : std::optional(place->second);
 }
 
-void CheckReport::add(const FoundContact& first, const FoundContact& deepest) {
-  const bool is_proved = first.contact.is_proved_free;
-  std::vector<TouchingPair>& list = is_proved ? proved_free : pairs;
-  PairIndex& index = is_proved ? place_in_proved_free : place_in_pairs;
-  const std::optional<std::size_t> known = index.find_or_add(first.contact, list.size());
+void PairCounter::add(const FoundContact& first, const FoundContact& deepest) {
+  const std::optional<std::size_t> known = places_.find_or_add(first.contact, pairs_.size());
   const std::size_t at_start = first.at.fraction == 0.0 ? 1 : 0;
   if (!known) {
-    list.push_back({1, at_start, first, deepest});
+    pairs_.push_back({1, at_start, first, deepest});
     return;
   }
-  TouchingPair& pair = list[*known];
+  TouchingPair& pair = pairs_[*known];
   ++pair.count;
   pair.at_start += at_start;
   if (deepest.contact.overlap_depth > pair.worst.contact.overlap_depth) pair.worst = deepest;
 }
 
-void CheckReport::tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses) {
+void TrajectoryFindings::tell_kinds(const RobotModel& robot,
+                                    const std::vector<PairStatus>& statuses) {
   std::map<std::pair<int, int>, const PairStatus*> status_of;
   for (const PairStatus& status : statuses) {
     status_of.try_emplace({status.first, status.second}, &status);
@@ -223,9 +222,9 @@ void CheckReport::tell_kinds(const RobotModel& robot, const std::vector<PairStat
 }
 
 std::vector<TouchingPair> always_touching(const CheckReport& report) {
-  const std::size_t all = report.motions.value_or(report.configurations);
+  const std::size_t all = report.found.motions.value_or(report.configurations);
   std::vector<TouchingPair> result;
-  std::copy_if(report.pairs.begin(), report.pairs.end(), std::back_inserter(result),
+  std::copy_if(report.found.pairs.begin(), report.found.pairs.end(), std::back_inserter(result),
                [&](const TouchingPair& pair) {
                  return all > 1 && pair.at_start == all &&
                         pair.first.contact.second.kind != CheckedBody::Kind::kObstacle;
@@ -247,11 +246,11 @@ std::string check_table(const CheckReport& report) {
   if (report.shard.of > 1)
     text << "shard " << report.shard.index << " of " << report.shard.of << ", ";
   text << verdict_of(report) << ": " << report.configurations << " configurations";
-  if (report.motions) {
-    text << ", " << *report.motions << " motions, " << report.colliding << " of them collide, "
-         << report.not_proved.size() << " are not proved free\n";
+  if (report.found.motions) {
+    text << ", " << *report.found.motions << " motions, " << report.found.colliding
+         << " of them collide, " << report.found.not_proved.size() << " are not proved free\n";
   } else {
-    text << ", " << report.colliding << " of them collide\n";
+    text << ", " << report.found.colliding << " of them collide\n";
   }
   if (!report.given_spheres.empty()) {
     text << "this is about the spheres of " << one_line(report.given_spheres)
@@ -261,13 +260,13 @@ std::string check_table(const CheckReport& report) {
   if (report.is_out_of_bounds()) {
     text << describe(report.outside, report.configurations, report.is_in_degrees) << "\n";
   }
-  if (!report.pairs.empty()) {
-    const bool has_kinds = std::any_of(report.pairs.begin(), report.pairs.end(),
+  if (!report.found.pairs.empty()) {
+    const bool has_kinds = std::any_of(report.found.pairs.begin(), report.found.pairs.end(),
                                        [](const TouchingPair& pair) { return !pair.kind.empty(); });
     std::vector<std::vector<std::string>> rows = {{"body", "touches", "times", "first at line",
                                                    "deepest at line", "depth there/mm", "where/m",
                                                    has_kinds ? "kind" : ""}};
-    for (const TouchingPair& pair : report.pairs) {
+    for (const TouchingPair& pair : report.found.pairs) {
       const CheckedContact& worst = pair.worst.contact;
       rows.push_back({worst.first.name, worst.second.name, std::to_string(pair.count),
                       text_of(pair.first.at), text_of(pair.worst.at),
@@ -277,39 +276,39 @@ std::string check_table(const CheckReport& report) {
   }
   put_proved_free(text, report);
   constexpr std::size_t kMost = 20;
-  for (std::size_t i = 0; i < std::min(kMost, report.not_proved.size()); ++i) {
-    text << "not proved beyond line " << text_of(report.not_proved[i]) << "\n";
+  for (std::size_t i = 0; i < std::min(kMost, report.found.not_proved.size()); ++i) {
+    text << "not proved beyond line " << text_of(report.found.not_proved[i]) << "\n";
   }
-  if (report.not_proved.size() > kMost) {
-    text << "and " << report.not_proved.size() - kMost << " more\n";
+  if (report.found.not_proved.size() > kMost) {
+    text << "and " << report.found.not_proved.size() - kMost << " more\n";
   }
   return text.str();
 }
 
 std::string check_json(const CheckReport& report) {
   Json json{{"verdict", verdict_of(report)}, {"configurations", report.configurations}};
-  if (report.motions) json["motions"] = *report.motions;
+  if (report.found.motions) json["motions"] = *report.found.motions;
   json["spheres"] = report.given_spheres.empty() ? "proved" : "given";
   if (report.shard.of > 1) {
     json["shard"] = {{"index", report.shard.index}, {"of", report.shard.of}};
   }
-  if (report.continuous) {
-    json["continuous"] = name_of(*report.continuous);
-    json["more_than_half_a_turn"] = to_json(report.turning);
+  if (report.turns.continuous) {
+    json["continuous"] = name_of(*report.turns.continuous);
+    json["more_than_half_a_turn"] = to_json(report.turns.turning);
   }
   json["limits"] = to_json(report.outside, report.enforces_limits);
-  json["colliding"] = report.colliding;
+  json["colliding"] = report.found.colliding;
   const TouchingPair* worst = deepest(report);
-  json["first_contact"] = worst ? to_json(report.pairs.front().first) : Json(nullptr);
+  json["first_contact"] = worst ? to_json(report.found.pairs.front().first) : Json(nullptr);
   json["worst_contact"] = worst ? to_json(worst->worst) : Json(nullptr);
   json["pairs"] = Json::array();
-  for (const TouchingPair& pair : report.pairs) json["pairs"].push_back(to_json(pair));
+  for (const TouchingPair& pair : report.found.pairs) json["pairs"].push_back(to_json(pair));
   json["proved_free"] = Json::array();
-  for (const TouchingPair& pair : report.proved_free) {
+  for (const TouchingPair& pair : report.found.proved_free) {
     json["proved_free"].push_back(to_json(pair));
   }
   json["not_proved"] = Json::array();
-  for (const TrajectoryPoint& point : report.not_proved) {
+  for (const TrajectoryPoint& point : report.found.not_proved) {
     json["not_proved"].push_back(to_json(point, "free_until"));
   }
   return to_text(json);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/options/shard.h"
+#include "cli/robots/turn_review.h"
 #include "robot/check/pair_status.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_review.h"
@@ -54,9 +55,20 @@ struct TrajectoryVerdicts {
   std::vector<EdgeResult> motions{};  // of every motion
 };
 
-// What a check of a trajectory found.
-struct CheckReport {
-  std::size_t configurations = 0;
+// Builds a list of touching pairs, in the order of the first contacts.
+class PairCounter {
+ public:
+  // Counts a configuration or motion in which a pair touches, at first and deepest there.
+  void add(const FoundContact& first, const FoundContact& deepest);
+  std::vector<TouchingPair> take() { return std::move(pairs_); }
+
+ private:
+  std::vector<TouchingPair> pairs_;
+  PairIndex places_;
+};
+
+// What was found along a trajectory, at configurations or on motions.
+struct TrajectoryFindings {
   std::optional<std::size_t> motions{};       // where motions were proved
   std::size_t colliding = 0;                  // of the motions, or of the configurations
   std::vector<TrajectoryPoint> not_proved{};  // motions, and up to where they are free
@@ -66,6 +78,15 @@ struct CheckReport {
   std::vector<TouchingPair> proved_free{};
   std::size_t explained = 0;  // configurations that were examined for these, the first ones
 
+  // Says of the pairs of links of what kind they are.
+  void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
+};
+
+// What a check of a trajectory has to say.
+struct CheckReport {
+  TrajectoryFindings found{};
+  std::size_t configurations = 0;
+
   // The file of spheres that were given: whether they cover the robot is not known. Empty for those
   // that were fitted, and so proved.
   std::string given_spheres{};
@@ -74,26 +95,15 @@ struct CheckReport {
 
   bool is_whole = true;  // no part of the robot was left out
 
-  // Of motions of a robot with continuous joints: which way these turn, and where that matters.
-  std::optional<ContinuousMotion> continuous{};
-  TurningMotions turning{};
+  TurnReview turns{};
   OutsideLimits outside{};
   bool enforces_limits = false;
   bool is_in_degrees = false;  // what people are told
 
   bool is_out_of_bounds() const { return enforces_limits && outside.count > 0; }
   bool is_free() const {
-    return colliding == 0 && not_proved.empty() && is_whole && !is_out_of_bounds();
+    return found.colliding == 0 && found.not_proved.empty() && is_whole && !is_out_of_bounds();
   }
-  // Counts a configuration or motion in which a pair touches, at first and deepest there.
-  void add(const FoundContact& first, const FoundContact& deepest);
-  void add(const FoundContact& found) { add(found, found); }
-  // Says of the pairs of links of what kind they are.
-  void tell_kinds(const RobotModel& robot, const std::vector<PairStatus>& statuses);
-
-  // For add().
-  PairIndex place_in_pairs{};
-  PairIndex place_in_proved_free{};
 };
 
 // "free", "collision", "not proved" or "outside limits".

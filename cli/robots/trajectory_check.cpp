@@ -20,11 +20,9 @@ class TrajectoryCheck {
         options_(options),
         scratches_(make_scratches(checker, options.threads)),
         places_(places_of(options.configurations_in_all > 0 ? options.configurations_in_all
-                                                            : trajectory.size())) {
-    report_.configurations = trajectory.size();
-  }
+                                                            : trajectory.size())) {}
 
-  CheckReport configurations() && {
+  TrajectoryFindings configurations() && {
     std::vector<std::uint8_t> free(trajectory_.size());
     const std::span all(trajectory_.positions);
     in_blocks(free.size(), [&](std::size_t first, std::size_t count) {
@@ -34,14 +32,14 @@ class TrajectoryCheck {
     count_proved_free();
     for (std::size_t i = 0; i < free.size(); ++i) {
       if (free[i] != 0) continue;
-      ++report_.colliding;
+      ++found_.colliding;
       explain(trajectory_.configuration(i), {.line = trajectory_.lines[i]});
     }
-    report_.verdicts.free = std::move(free);
-    return std::move(report_);
+    found_.verdicts.free = std::move(free);
+    return take();
   }
 
-  CheckReport motions() && {
+  TrajectoryFindings motions() && {
     const std::size_t count = std::max<std::size_t>(trajectory_.size(), 1) - 1;
     const std::span all(trajectory_.positions);
     const std::size_t width = trajectory_.width;
@@ -54,9 +52,9 @@ class TrajectoryCheck {
           all.subspan((first + 1) * width, edges * width), scratches_, request);
       results.insert(results.end(), some.begin(), some.end());
     });
-    report_.motions = count;
+    found_.motions = count;
     count_proved_free();
-    report_.colliding = static_cast<std::size_t>(
+    found_.colliding = static_cast<std::size_t>(
         std::ranges::count(results, Verdict::kCollision, &EdgeResult::verdict));
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.progress && i % kLeastBlock == 0) {
@@ -65,13 +63,13 @@ class TrajectoryCheck {
       if (results[i].verdict == Verdict::kCollision) {
         explain_motion(i, results[i].contact_at);
       } else if (results[i].verdict == Verdict::kUnknown) {
-        report_.not_proved.push_back({.line = trajectory_.lines[i],
-                                      .to_line = trajectory_.lines[i + 1],
-                                      .fraction = results[i].free_until});
+        found_.not_proved.push_back({.line = trajectory_.lines[i],
+                                     .to_line = trajectory_.lines[i + 1],
+                                     .fraction = results[i].free_until});
       }
     }
-    report_.verdicts.motions = std::move(results);
-    return std::move(report_);
+    found_.verdicts.motions = std::move(results);
+    return take();
   }
 
  private:
@@ -88,18 +86,27 @@ class TrajectoryCheck {
   }
 
   void count_proved_free() {
-    report_.explained = options_.explained;
-    for (std::size_t i = 0; i < report_.explained; ++i) {
+    found_.explained = options_.explained;
+    for (std::size_t i = 0; i < found_.explained; ++i) {
       for (const CheckedContact& contact : checker_.explain(
                trajectory_.configuration(i), scratches_.front(), {.proved_free = true})) {
-        if (contact.is_proved_free) report_.add({{.line = trajectory_.lines[i]}, contact});
+        if (contact.is_proved_free) {
+          const FoundContact found{{.line = trajectory_.lines[i]}, contact};
+          proved_free_.add(found, found);
+        }
       }
     }
   }
 
+  TrajectoryFindings take() {
+    found_.pairs = pairs_.take();
+    found_.proved_free = proved_free_.take();
+    return std::move(found_);
+  }
+
   void explain(std::span<const double> configuration, const TrajectoryPoint& at) {
     for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
-      report_.add({at, contact});
+      pairs_.add({at, contact}, {at, contact});
     }
   }
 
@@ -127,7 +134,7 @@ class TrajectoryCheck {
         }
       }
     }
-    for (const auto& [first, deepest] : found) report_.add(first, deepest);
+    for (const auto& [first, deepest] : found) pairs_.add(first, deepest);
   }
 
   // How many places of a motion are searched: 24, of trajectories of more than 1,666 configurations
@@ -144,7 +151,9 @@ class TrajectoryCheck {
   const TrajectoryCheckOptions& options_;
   std::vector<RobotChecker::Scratch> scratches_;
   const std::size_t places_;
-  CheckReport report_;
+  TrajectoryFindings found_;
+  PairCounter pairs_;
+  PairCounter proved_free_;
 };
 
 }  // namespace
@@ -157,13 +166,13 @@ std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, i
   return scratches;
 }
 
-CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
-                                 const TrajectoryCheckOptions& options) {
+TrajectoryFindings check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                        const TrajectoryCheckOptions& options) {
   return TrajectoryCheck(checker, trajectory, options).configurations();
 }
 
-CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,
-                          const TrajectoryCheckOptions& options) {
+TrajectoryFindings check_motions(const RobotChecker& checker, const Trajectory& trajectory,
+                                 const TrajectoryCheckOptions& options) {
   return TrajectoryCheck(checker, trajectory, options).motions();
 }
 

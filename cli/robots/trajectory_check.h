@@ -27,9 +27,9 @@ struct TrajectoryCheckOptions {
 std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads);
 
 // Every configuration, or every motion from one to the next.
-CheckReport check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+TrajectoryFindings check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                        const TrajectoryCheckOptions& options);
+TrajectoryFindings check_motions(const RobotChecker& checker, const Trajectory& trajectory,
                                  const TrajectoryCheckOptions& options);
-CheckReport check_motions(const RobotChecker& checker, const Trajectory& trajectory,
-                          const TrajectoryCheckOptions& options);
 
 }  // namespace spherule
