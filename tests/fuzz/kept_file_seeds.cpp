@@ -49,6 +49,8 @@ robot_cfg:
           "kinematics:\n  k: &k {a: 1}\n  b: *k\n  collision_spheres: {base: []}\n"
           "  self_collision_ignore: {other: &l [x], base: *l}\n",
           "collision_spheres:\n  base: []\n",
+          "format: xrdf\nformat_version: 1.0\ncollision:\n  geometry: auto\n"
+          "geometry:\n  auto:\n    spheres:\n  fine: {}\nself_collision:\n  geometry: auto\n",
           R"(format: "xrdf"
 format_version: 1.0
 

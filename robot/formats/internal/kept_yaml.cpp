@@ -66,7 +66,9 @@ std::vector<YamlPlace> siblings(const Node& root, const Keys& keys,
     });
     if (found == result.end()) return {};
     map.reset(found->value);
-    next_above = found->next;
+    // Not by assignment, which would make the key that it holds another one in the document.
+    next_above.reset();
+    if (found->next) next_above.emplace(*found->next);
   }
 }
 

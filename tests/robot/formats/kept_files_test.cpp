@@ -70,6 +70,20 @@ const std::string kSpheres =
     "      base:\n        - {center: [0.0, 0.0, 0.0], radius: 0.5}\n"
     "      arm:\n        - {center: [1.0, 2.0, 3.0], radius: 0.25}\n      hand: []\n";
 
+// Beside the geometry that gets the spheres there is another one, and further keys follow both.
+TEST_F(KeptFiles, XrdfOfTwoGeometries) {
+  const std::string before =
+      "format: xrdf\nformat_version: 1.0\ncollision:\n  geometry: auto\n"
+      "geometry:\n  auto:\n    spheres:\n";
+  const std::string between = "  fine:\n    spheres: {}\nself_collision:\n";
+  const std::string after = "  geometry: auto\n";
+  const std::string ignored = "  ignore:\n    base: [arm, hand]  # Adjacent: arm; " + kNever +
+                              ": hand\n    arm: [hand]  # given: hand\n";
+  const std::string expected = before + kSpheres + between + ignored + after;
+  EXPECT_EQ(kept(SphereFormat::kXrdf, before + between + "  ignore:\n" + after), expected);
+  EXPECT_EQ(kept(SphereFormat::kXrdf, before + between + after), expected);
+}
+
 // As cuRobo's first files are: lists in brackets within braces, comments, quotes.
 TEST_F(KeptFiles, CuroboInBraces) {
   const std::string original = R"(##
