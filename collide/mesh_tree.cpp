@@ -19,10 +19,7 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   validate(mesh, "mesh");
   std::vector<Triangle> result;
   result.reserve(mesh.triangles.size());
-  for (const Eigen::Vector3i& indices : mesh.triangles) {
-    const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(indices[k])]; };
-    result.push_back({corner(0), corner(1), corner(2)});
-  }
+  for (const Eigen::Vector3i& indices : mesh.triangles) result.push_back(corners_of(mesh, indices));
   return result;
 }
 

@@ -62,8 +62,9 @@ CoveredPart cover_part(const TriangleMesh& mesh, const ModelOptions& options = {
 // FCL's own collide() and distance() do not know spheres and would answer "free" for lack of a
 // function. So getObjectType(), which they call first, throws Error; so do FCL's managers with
 // FCL's narrow phases, and its continuousCollide() with the default solver. With
-// CCDC_CONSERVATIVE_ADVANCEMENT that one examines nothing but getNodeType(), which managers call,
-// too, so that it cannot throw: FCL prints a warning, returns -1 and leaves is_collide false.
+// CCDC_CONSERVATIVE_ADVANCEMENT, or another solver and a geometry of FCL's, that one examines
+// nothing but getNodeType(), which managers call, too, so that it cannot throw: FCL prints a
+// warning, returns -1 and may leave is_collide false.
 template <class S>
 class SphereModel final : public fcl::CollisionGeometry<S> {
  public:

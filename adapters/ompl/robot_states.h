@@ -82,9 +82,9 @@ class RobotStates {
   // What one query writes to.
   struct Scratch {
     // For this checker and its copies.
-    explicit Scratch(const RobotChecker& robot_checker) : checker(robot_checker) {}
+    explicit Scratch(const RobotChecker& checker) : of_checker(checker) {}
 
-    RobotChecker::Scratch checker;
+    RobotChecker::Scratch of_checker;
     std::vector<double> from;
     std::vector<double> to;
   };

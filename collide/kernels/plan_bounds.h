@@ -21,8 +21,8 @@
 // from a point of the other, in the directions of the link behind s, is at most both together. Any
 // s will do, and the smallest sum over all counts. Against the root s is behind the last joint.
 //
-// r_k is at most what the step has without shifts (the proof is in
-// robot/model/internal/path_reach.cpp) and the largest shift of each prismatic joint before it.
+// r_k is at most the sum of what the step has without shifts (the proof is in
+// robot/model/internal/path_reach.cpp) and of the largest shift of each prismatic joint before it.
 //
 // Rounding. No term is negative. A sum over n joints of rates times sums over n joints errs by
 // less than (3 n + 8) v of itself, v being the unit roundoff of Real: bound_slack exceeds that.

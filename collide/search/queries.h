@@ -19,6 +19,11 @@
 
 namespace spherule::internal {
 
+template <class LeafTest>
+concept JudgesNodes = requires(const LeafTest& test, NodePair pair) {
+  test.may_touch(pair);
+};
+
 // Ends at the first pair that touches. Counts nothing.
 template <class LeafTest>
 class FindAny {

@@ -39,9 +39,8 @@ inline constexpr std::size_t kInlineStack = 2304;
 //                                      (relative_pose.h says how exactly). May change on the way;
 //   bool nearest_first()               beside margin(): whether the nearest child is visited first,
 //                                      which pays where what is found narrows the margin;
-//   bool enters(pair)                  only where the policy has one: false for a pair whose
-//   spheres
-//                                      may touch, but which is proved apart in another way.
+//   bool enters(pair)                  only where the policy has one: false for a pair that is
+//                                      proved apart, though its spheres may touch.
 
 template <class Policy>
 concept ProvesPairsApart = requires(const Policy& policy, NodePair pair) {

@@ -275,6 +275,7 @@ class LinkPair(Record):
     witness: Floats
     """A configuration in which they touch; empty unless they do."""
     smallest_gap: float
+    """An upper bound, in metres; infinite where none was searched, as for 'never'."""
     free_share: float
     """Proved free, of the volume of the joints' ranges."""
 

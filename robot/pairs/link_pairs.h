@@ -24,10 +24,10 @@
 #include "collide/solid_mesh.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/free_boxes.h"
+#include "spheretree/progress.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -64,8 +64,10 @@ struct LinkPair {
   int second = 0;
   PairVerdict verdict = PairVerdict::kUnknown;
   std::vector<double> witness{};  // a configuration of the whole robot; empty unless they touch
-  // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch,
-  // infinite where none was searched: for kNever.
+  // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch.
+  // Infinite where no samples were taken or kept: of kNever, and of kUnknown where the boxes are
+  // all free, no time was left, the joints or positions are too many or too large, or no samples
+  // were requested.
   double smallest_gap = std::numeric_limits<double>::infinity();
   // Proved: in no configuration of these boxes the two have a point in common, of the exact
   // mechanism, or under the poses that forward_kinematics() computes with the root at the world's
@@ -93,7 +95,7 @@ struct LinkPairOptions {
   // Once requested, what is not decided is kUnknown.
   std::stop_token stop{};
   // Called with the share of the pairs that are done and a word, from one thread at a time.
-  std::function<void(double share, const char* what)> progress{};
+  Progress progress{};
 };
 
 // The pairs of a robot's links that joints move against each other, and what is proved of each.

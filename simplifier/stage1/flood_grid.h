@@ -62,9 +62,8 @@ class FloodGrid {
   // (d1 + d2 - h) / 2 >= rho, the greatest on that segment; or, where that makes a difference, by
   // bisection (sphere_displacement.h). A step between two coarse free cells always passes, through
   // their common face. So does one between a node and a coarse free cell where rho is the same: on
-  // the segment of h / 2 to the common face the clearance is at least (d1 + rho + 1.2 h - h / 2) /
-  // 2
-  // >= rho. Where zones make a difference, that segment is examined.
+  // the segment of h / 2 to the common face the clearance is at least half of d1 + rho + 0.7 h, so
+  // at least rho. Where zones make a difference, that segment is examined.
   void flood();
 
   // After flood(): halves cells where a sphere that is larger by a share might get to places that

@@ -58,8 +58,8 @@ TEST(SolidWithin, MeshesOfNeedlesAreJudgedByTheirExactGap) {
   std::size_t apart = 0;
   for (int n = 0; n < effort(150, 12); ++n) {
     const double size = std::ldexp(1.0, random.whole(-20, 17));
-    const SolidMesh a(needles(random, 8, size));
-    const SolidMesh b(needles(random, 8, size));
+    const SolidMesh a(needles(random, 14, size));
+    const SolidMesh b(needles(random, 14, size));
     const Pose world_from_a = random.pose(2.0 * size);
     const Pose world_from_b = random.pose(2.0 * size);
     const double gap = exact_gap_of(a.mesh(), world_from_a, b.mesh(), world_from_b);
@@ -98,6 +98,8 @@ void expect_box_of_triangles(const MeshTree& mesh, const internal::NodeBoxes& bo
   for (int i = 0; i < 3; ++i) {
     const Real center = box.center[i], half = box.half_size[i];
     EXPECT_TRUE(center - half <= Real(low[i]) && Real(high[i]) <= center + half);
+    EXPECT_LE(std::abs(box.center[i]) + box.half_size[i],
+              mesh.tree().reach() * (1.0 + 0x1p-21) + 0x1p-125);
     const double farthest = std::max(std::abs(low[i]), std::abs(high[i]));
     EXPECT_LE(box.half_size[i], 0.5 * high[i] - 0.5 * low[i] + 0x1p-21 * farthest + 0x1p-125);
   }

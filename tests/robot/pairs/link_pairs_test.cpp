@@ -212,6 +212,30 @@ TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
   for (double x = 1.12; x <= 3.0; x += 0.01) EXPECT_TRUE(pairs.is_free(0, 1, Configuration{x}));
 }
 
+// Two interleaved combs that slide by a little more than the gaps between their teeth: near its
+// ends the range is halved on and on, and each box takes thousands of tests.
+TEST(LinkPairs, ASearchEndsWhereItsBoxesTakeManyTests) {
+  BoxRobot robot{RobotModel("base")};
+  robot.model.add_link("part", "base",
+                       {.name = "slide",
+                        .type = JointType::kPrismatic,
+                        .axis = Vector3d::UnitY(),
+                        .lower = -0.0015,
+                        .upper = 0.0015});
+  std::vector<AlignedBox3d> teeth, others;
+  for (int i = 0; i < 60; ++i) {
+    const double y = 0.02 * i;
+    teeth.push_back(box({-1.0, y, 0.0}, {1.0, y + 0.009, 1.0}));
+    others.push_back(box({-1.0, y + 0.01, 0.0}, {1.0, y + 0.019, 1.0}));
+  }
+  robot.add_boxes(0, teeth);
+  robot.add_boxes(1, others);
+  const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies,
+                                           {.boxes = 50, .samples = 0, .smallest_motion = 1e-9});
+  EXPECT_GT(pairs.pairs()[0].searched_boxes, 0U);
+  EXPECT_LT(pairs.pairs()[0].searched_boxes, 50U);
+}
+
 // A part between the two prongs of a fork, whose hull it is in: only the pieces tell.
 TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
   BoxRobot robot = with_sliding_part(0.5);
