@@ -15,6 +15,7 @@
 #include "cli/text/progress.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/build.h"
+#include "spheretree/error.h"
 #include "spheretree/tree_file.h"
 
 #include <algorithm>
