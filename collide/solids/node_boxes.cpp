@@ -13,11 +13,11 @@
 namespace spherule::internal {
 namespace {
 
-// Numbers below the least normal one are not used, so that a processor that takes them for zero
-// finds the same box.
+// Numbers below the least normal one are not used, so that boxes hold their triangles also where a
+// processor takes such numbers for zero.
 constexpr float kLeastNormal = std::numeric_limits<float>::min();
 
-float near_to(double value) {
+float rounded_or_zero(double value) {
   return std::abs(value) < static_cast<double>(kLeastNormal) ? 0.0F : static_cast<float>(value);
 }
 
@@ -45,7 +45,7 @@ NodeBoxes::NodeBoxes(const MeshTree& mesh) {
       box.extend(boxes[static_cast<std::size_t>(tree.first_child(node) + i)]);
     }
     for (int i = 0; i < 3; ++i) {
-      const float center = near_to(0.5 * box.min()[i] + 0.5 * box.max()[i]);
+      const float center = rounded_or_zero(0.5 * box.min()[i] + 0.5 * box.max()[i]);
       boxes_[node].center[i] = center;
       boxes_[node].half_size[i] =
           up_to_float(std::max(sub_up(box.max()[i], center), sub_up(center, box.min()[i])));

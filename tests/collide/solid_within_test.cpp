@@ -55,8 +55,8 @@ double exact_gap_of(const MeshTree& a, const Pose& world_from_a, const MeshTree&
 
 TEST(SolidWithin, MeshesOfNeedlesAreJudgedByTheirExactGap) {
   SceneRandom random(23);
-  std::size_t apart = 0;
-  for (int n = 0; n < effort(150, 12); ++n) {
+  int apart = 0;
+  for (int n = 0; n < effort(80, 8); ++n) {
     const double size = std::ldexp(1.0, random.whole(-20, 17));
     const SolidMesh a(needles(random, 14, size));
     const SolidMesh b(needles(random, 14, size));
@@ -72,7 +72,7 @@ TEST(SolidWithin, MeshesOfNeedlesAreJudgedByTheirExactGap) {
     ++apart;
     EXPECT_FALSE(within(a, world_from_a, b, world_from_b, below)) << n;
   }
-  EXPECT_GT(apart, effort(75U, 5U));
+  EXPECT_GT(apart, effort(40, 3));
 }
 
 // A node's box holds the triangles of all leaves below it, and is no larger than they need.
