@@ -190,20 +190,20 @@ TEST(LinkPairs, AProofThatIsFarEndsWithTheBoxesOfOthers) {
   EXPECT_EQ(pairs.pairs()[0].searched_boxes, 20U);
 }
 
-// A part that slides along x, from -0.5 on, in a link that has no body yet.
-BoxRobot with_sliding_part(double upper) {
+// A part that slides along an axis of its base; neither has a body yet.
+BoxRobot with_sliding_part(double lower, double upper, const Vector3d& axis = Vector3d::UnitX()) {
   BoxRobot robot{RobotModel("base")};
   robot.model.add_link("part", "base",
                        {.name = "slide",
                         .type = JointType::kPrismatic,
-                        .axis = Vector3d::UnitX(),
-                        .lower = -0.5,
+                        .axis = axis,
+                        .lower = lower,
                         .upper = upper});
   return robot;
 }
 
 TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
-  BoxRobot robot = with_sliding_part(3.0);
+  BoxRobot robot = with_sliding_part(-0.5, 3.0);
   robot.add_boxes(0, {box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0})});
   robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
@@ -215,13 +215,7 @@ TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
 // Two interleaved combs that slide by a little more than the gaps between their teeth: near its
 // ends the range is halved on and on, and each box takes thousands of tests.
 TEST(LinkPairs, ASearchEndsWhereItsBoxesTakeManyTests) {
-  BoxRobot robot{RobotModel("base")};
-  robot.model.add_link("part", "base",
-                       {.name = "slide",
-                        .type = JointType::kPrismatic,
-                        .axis = Vector3d::UnitY(),
-                        .lower = -0.0015,
-                        .upper = 0.0015});
+  BoxRobot robot = with_sliding_part(-0.0015, 0.0015, Vector3d::UnitY());
   std::vector<AlignedBox3d> teeth, others;
   for (int i = 0; i < 60; ++i) {
     const double y = 0.02 * i;
@@ -238,7 +232,7 @@ TEST(LinkPairs, ASearchEndsWhereItsBoxesTakeManyTests) {
 
 // A part between the two prongs of a fork, whose hull it is in: only the pieces tell.
 TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
-  BoxRobot robot = with_sliding_part(0.5);
+  BoxRobot robot = with_sliding_part(-0.5, 0.5);
   robot.add_boxes(
       0, {box({-1.0, 0.2, -0.1}, {1.0, 0.3, 0.1}), box({-1.0, -0.3, -0.1}, {1.0, -0.2, 0.1})});
   robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
@@ -268,7 +262,7 @@ TEST(LinkPairs, CornersThatAreNotKeptCount) {
       });
   ASSERT_NE(left_out, unit.vertices.end());
   for (const double gap : {0.0015, -2e-5}) {
-    BoxRobot robot = with_sliding_part(0.5);
+    BoxRobot robot = with_sliding_part(-0.5, 0.5);
     robot.bodies = {first.front(), sphere(1, (2.0 * kRadius + gap) * left_out->normalized())};
     const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
     EXPECT_EQ(pairs.pairs()[0].verdict == PairVerdict::kNever, gap > 0.0);
