@@ -10,11 +10,10 @@
 namespace spherule::test {
 namespace {
 
-SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double diameter,
-                          int rounds = 4) {
+SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double diameter) {
   const ExternalSpheres external =
       place_external_spheres(mesh, {.min_external_diameter = diameter, .max_error = max_error});
-  return cover(mesh, external, {.max_error = max_error, .effort = rounds, .lower_bound = true});
+  return cover(mesh, external, {.max_error = max_error, .effort = 0, .lower_bound = true});
 }
 
 TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
@@ -48,7 +47,7 @@ TEST(CoverBound, StaysBelowTheCountOfEveryShape) {
 TEST(CoverBound, IsEqualOnAnyNumberOfThreads) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh mesh = l_bracket();
-  const double max_error = 0.13 * diagonal_of(mesh);
+  const double max_error = 0.17 * diagonal_of(mesh);
   const ExternalSpheres external = place_external_spheres(
       mesh, {.min_external_diameter = 4.0 * max_error, .max_error = max_error});
   const auto bound = [&](int threads) {

@@ -160,6 +160,7 @@ TEST(SphereOfPlaces, ABoxNeedsNoExternalSpheres) {
 
 // A ball that is closed takes fewer cells than with a way in.
 TEST(SphereOfPlaces, TheInsideOfAClosedPartIsNotHalved) {
+  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh closed = icosphere(2);
   TriangleMesh open = closed;
   open.triangles.pop_back();
