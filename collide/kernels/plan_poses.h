@@ -4,14 +4,8 @@
 // Kinematics of eight configurations side by side: poses, velocities, centres of nodes. Part of the
 // kernels, see plan_kernel_impl.h.
 //
-// Error budget of poses, v being the unit roundoff (2^-24 or 2^-53). Angles are reduced in double:
-// of an angle x with |x| <= 100, k = x 2 / pi rounded is at most 64, and x - k pi / 2 in two steps
-// errs by less than 2e-14; the remainder lies within pi / 4 + 1e-13.
-//   Single: rounding the remainder costs 0.8 v. The sine's series up to r^9 errs by r^11 / 11! <
-//   0.03 v, the cosine's up to r^8 by r^10 / 10! < 0.42 v, their evaluation by less than 3 v: the
-//   pair by less than 6 v.
-//   Double: the sine's series up to r^11 errs by r^13 / 13! < 7.0e-12, the cosine's up to r^12 by
-//   r^14 / 14! < 4e-13, roundings by 1e-15: the pair by less than 2e-11.
+// Error budget of poses, v being the unit roundoff (2^-24 or 2^-53). A pair of sine and cosine errs
+// by less than 6 v in single precision, by less than 2e-11 in double (kernel_angles.h).
 // Of a frame in its parent's, over all nine entries of a rotation (Frobenius), besides the sines:
 //   the frame's rotation rounded           2 v
 //   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
@@ -28,51 +22,25 @@
 // (4 n + 16) v W for each rate, which is below the above, 38 n v W, too: 5 times that in all.
 
 #include "collide/kernels/plan_vectors.h"
+#include "collide/mechanism/kernel_angles.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-struct Reduced {
-  Double8 remainder;
-  Double8 quarter;  // a whole number
-};
-
-SPHERULE_INLINE Reduced reduce(const Double8& angle) {
-  const Double8 k = (angle * kTwoOverPi + kRound) - kRound;
-  return {(angle - k * kHalfPi) - k * kHalfPiRest, k};
-}
-
-// Exchanges and signs sine and cosine for the quarter of the turn.
-template <class Real>
-SPHERULE_INLINE void turn_quarters(const Vector<Real>& sine, const Vector<Real>& cosine,
-                                   const Bits<Real>& quarter, Vector<Real>& turned_sine,
-                                   Vector<Real>& turned_cosine) {
-  constexpr int kShift = sizeof(Real) * 8 - 2;
-  const Bits<Real> odd = -(quarter & 1);
-  const auto& s = reinterpret_cast<const Bits<Real>&>(sine);
-  const auto& c = reinterpret_cast<const Bits<Real>&>(cosine);
-  const Bits<Real> new_sine = ((s & ~odd) | (c & odd)) ^ ((quarter & 2) << kShift);
-  const Bits<Real> new_cosine = ((c & ~odd) | (s & odd)) ^ (((quarter + 1) & 2) << kShift);
-  turned_sine = reinterpret_cast<const Vector<Real>&>(new_sine);
-  turned_cosine = reinterpret_cast<const Vector<Real>&>(new_cosine);
-}
-
 SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Float8& sine, Float8& cosine) {
-  const Reduced reduced = reduce(angle);
-  const Float8 r = to_single(reduced.remainder);
-  const Int8 quarter = to_integers(reduced.quarter);
+  const auto less_quarters = reduced(angle);
+  const Float8 r = to_single(less_quarters.remainder);
+  const Int8 quarter = to_integers(less_quarters.quarters);
   const Float8 r2 = r * r;
-  const Float8 s =
-      r + r * r2 * (-1.0F / 6 + r2 * (1.0F / 120 + r2 * (-1.0F / 5040 + r2 * (1.0F / 362880))));
-  const Float8 c =
-      1.0F - 0.5F * r2 + r2 * r2 * (1.0F / 24 + r2 * (-1.0F / 720 + r2 * (1.0F / 40320)));
-  turn_quarters<float>(s, c, quarter, sine, cosine);
+  const auto turned = turned_by(quarter, sine_series(r, r2), cosine_series(r2));
+  sine = reinterpret_cast<const Float8&>(turned.sine);
+  cosine = reinterpret_cast<const Float8&>(turned.cosine);
 }
 
 SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Double8& sine, Double8& cosine) {
-  const Reduced reduced = reduce(angle);
-  const Double8& r = reduced.remainder;
-  const Long8 quarter = __builtin_convertvector(reduced.quarter, Long8);
+  const auto less_quarters = reduced(angle);
+  const Double8& r = less_quarters.remainder;
+  const Long8 quarter = __builtin_convertvector(less_quarters.quarters, Long8);
   const Double8 r2 = r * r;
   const Double8 s =
       r + r * r2 *
@@ -83,7 +51,9 @@ SPHERULE_INLINE void sine_and_cosine(const Double8& angle, Double8& sine, Double
       r2 * r2 *
           (1.0 / 24 +
            r2 * (-1.0 / 720 + r2 * (1.0 / 40320 + r2 * (-1.0 / 3628800 + r2 * (1.0 / 479001600)))));
-  turn_quarters<double>(s, c, quarter, sine, cosine);
+  const auto turned = turned_by(quarter, s, c);
+  sine = reinterpret_cast<const Double8&>(turned.sine);
+  cosine = reinterpret_cast<const Double8&>(turned.cosine);
 }
 
 SPHERULE_INLINE Float8 rounded(const Double8& x, float) {

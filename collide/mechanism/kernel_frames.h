@@ -3,13 +3,8 @@
 
 // Kinematics of one configuration in double precision. Part of the kernels, see
 // mechanism_kernel_impl.h.
-//
-// Of an angle x with |x| <= 100 (MechanismCheck::kLargestVariable), k = x 2 / pi
-// rounded is at most 64, and x - k pi / 2 in two steps errs by less than 64 (2^-53 + 2^-106 ...) <
-// 2e-14; the remainder lies within pi / 4 + 1e-13. The sine's series up to r^11 errs by r^13 / 13!
-// < 7.0e-12, the cosine's up to r^12 by r^14 / 14! < 4e-13; a few roundings of numbers below one,
-// 1e-15. Together both err by less than 7.1e-12, the pair by less than kSineError = 2e-11.
 
+#include "collide/mechanism/kernel_angles.h"
 #include "collide/mechanism/kernel_search.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
@@ -35,9 +30,8 @@ SPHERULE_INLINE Double4 load_some(const double* p, std::int32_t count) {
 
 // The series are summed in pairs of terms: a chain of terms would have to wait for each.
 SPHERULE_INLINE void sine_and_cosine(Double4 x, double* sines, double* cosines) {
-  const Double4 shifted = x * kTwoOverPi + kRound;
-  const Double4 k = shifted - kRound;
-  const Double4 r = (x - k * kHalfPi) - k * kHalfPiRest;
+  const auto angle = reduced(x);
+  const Double4& r = angle.remainder;
   const Double4 r2 = r * r;
   const Double4 r4 = r2 * r2;
   const Double4 sine =
@@ -48,14 +42,10 @@ SPHERULE_INLINE void sine_and_cosine(Double4 x, double* sines, double* cosines) 
       r4 * ((r2 * (-1.0 / 720) + 1.0 / 24) +
             r4 * ((r2 * (-1.0 / 3628800) + 1.0 / 40320) + r4 * (1.0 / 479001600)));
   Long4 quarter;
-  __builtin_memcpy(&quarter, &shifted, sizeof quarter);
-  const Long4 odd = -(quarter & 1);
-  const Long4 sine_bits = reinterpret_cast<const Long4&>(sine);
-  const Long4 cosine_bits = reinterpret_cast<const Long4&>(cosine);
-  const Long4 s = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ ((quarter & 2) << 62);
-  const Long4 c = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ (((quarter + 1) & 2) << 62);
-  __builtin_memcpy(sines, &s, sizeof s);
-  __builtin_memcpy(cosines, &c, sizeof c);
+  __builtin_memcpy(&quarter, &angle.shifted, sizeof quarter);
+  const auto turned = turned_by(quarter, sine, cosine);
+  __builtin_memcpy(sines, &turned.sine, sizeof turned.sine);
+  __builtin_memcpy(cosines, &turned.cosine, sizeof turned.cosine);
 }
 
 // Where a variable has its frame in the parent's. To memory, from where one number at a time is

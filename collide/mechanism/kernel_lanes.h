@@ -4,10 +4,7 @@
 // Sixteen configurations side by side, in as many vectors of the machine as that takes: numbers,
 // and the kinematics in single precision. Part of the kernels, see mechanism_kernel_impl.h.
 //
-// Error budget, v = 2^-24. Angles are reduced in double: with kernel_frames.h the remainder errs by
-// less than 2e-14 and lies within pi / 4 + 1e-13; rounding it to single costs 0.8 v. The sine's
-// series up to r^9 errs by r^11 / 11! < 0.03 v, the cosine's up to r^8 by r^10 / 10! < 0.42 v;
-// evaluating them by less than 3 v. Each errs by less than 4 v, the pair by less than 6 v.
+// Error budget, v = 2^-24. A pair of sine and cosine errs by less than 6 v (kernel_angles.h).
 // Of a frame in its parent's, over all nine entries of a rotation (Frobenius):
 //   the frame's rotation rounded           2 v
 //   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
@@ -18,6 +15,7 @@
 // no more than W from it, moves by less than 21 v W and 10 v W: 31 v W a frame, and a fifth more
 // for what the norms of rounded rotations grow by in chains of up to kLongestLaneChain frames.
 
+#include "collide/mechanism/kernel_angles.h"
 #include "collide/mechanism/kernel_frames.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
@@ -164,10 +162,11 @@ SPHERULE_INLINE void reduce(const double* angles, float* remainders, std::int32_
 #pragma GCC unroll 8
   for (int i = 0; i < 2 * kParts; ++i) {
     const DoublePart x = reinterpret_cast<const DoublePart*>(angles)[i];
-    const DoublePart k = (x * kTwoOverPi + kRound) - kRound;
-    const DoublePart r = (x - k * kHalfPi) - k * kHalfPiRest;
-    reinterpret_cast<HalfFloatPart*>(remainders)[i] = __builtin_convertvector(r, HalfFloatPart);
-    reinterpret_cast<HalfIntPart*>(quarters)[i] = __builtin_convertvector(k, HalfIntPart);
+    const auto angle = reduced(x);
+    reinterpret_cast<HalfFloatPart*>(remainders)[i] =
+        __builtin_convertvector(angle.remainder, HalfFloatPart);
+    reinterpret_cast<HalfIntPart*>(quarters)[i] =
+        __builtin_convertvector(angle.quarters, HalfIntPart);
   }
 }
 
@@ -177,17 +176,11 @@ SPHERULE_INLINE void sines_and_cosines(const float* remainders, const std::int32
     const FloatPart r = reinterpret_cast<const FloatPart*>(remainders)[i];
     const IntPart quarter = reinterpret_cast<const IntPart*>(quarters)[i];
     const FloatPart r2 = r * r;
-    const FloatPart sine =
-        r + r * r2 * (-1.0F / 6 + r2 * (1.0F / 120 + r2 * (-1.0F / 5040 + r2 * (1.0F / 362880))));
-    const FloatPart cosine =
-        1.0F - 0.5F * r2 + r2 * r2 * (1.0F / 24 + r2 * (-1.0F / 720 + r2 * (1.0F / 40320)));
-    const IntPart odd = -(quarter & 1);
-    const IntPart s = reinterpret_cast<const IntPart&>(sine);
-    const IntPart c = reinterpret_cast<const IntPart&>(cosine);
-    const IntPart turned_sine = ((s & ~odd) | (c & odd)) ^ ((quarter & 2) << 30);
-    const IntPart turned_cosine = ((c & ~odd) | (s & odd)) ^ (((quarter + 1) & 2) << 30);
-    __builtin_memcpy(&sines.part[i], &turned_sine, sizeof turned_sine);
-    __builtin_memcpy(&cosines.part[i], &turned_cosine, sizeof turned_cosine);
+    const FloatPart sine = sine_series(r, r2);
+    const FloatPart cosine = cosine_series(r2);
+    const auto turned = turned_by(quarter, sine, cosine);
+    __builtin_memcpy(&sines.part[i], &turned.sine, sizeof turned.sine);
+    __builtin_memcpy(&cosines.part[i], &turned.cosine, sizeof turned.cosine);
   }
 }
 

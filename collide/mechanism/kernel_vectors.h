@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Vectors of eight numbers and the reduction of angles. Part of all kernels, for the instruction
-// set that SPHERULE_KERNEL names.
+// Vectors of eight numbers. Part of all kernels, for the instruction set that SPHERULE_KERNEL
+// names.
 
 #include <cstdint>
 
@@ -17,15 +17,6 @@ namespace {
 
 typedef float Float8 __attribute__((vector_size(32), may_alias));
 typedef std::int32_t Int8 __attribute__((vector_size(32), may_alias));
-
-// Of an angle x, k = x kTwoOverPi is rounded by adding and subtracting kRound, which leaves an
-// integer in the last bits, and x - k kHalfPi - k kHalfPiRest remains. Adding 1.5 2^52 rounds to an
-// integer only where double is not computed with more bits.
-static_assert(__FLT_EVAL_METHOD__ == 0);
-constexpr double kRound = 0x1.8p52;
-constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-constexpr double kHalfPi = 0x1.921fb54442d18p+0;
-constexpr double kHalfPiRest = 0x1.1a62633145c07p-54;
 
 SPHERULE_INLINE Float8 load(const float* p) {
   return *reinterpret_cast<const Float8*>(p);
