@@ -4,7 +4,7 @@
 // What the programs of bench/ have in common.
 
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -2,7 +2,7 @@
 #include "simplifier/simplify.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #include "simplifier/zones.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/parse_json.h"
+#include "spheretree/text/parse_json.h"
 
 #include <nlohmann/json.hpp>
 

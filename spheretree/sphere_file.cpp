@@ -4,7 +4,7 @@
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/internal/file_content.h"
-#include "spheretree/parse_json.h"
+#include "spheretree/text/parse_json.h"
 
 #include <nlohmann/json.hpp>
 

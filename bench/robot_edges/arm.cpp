@@ -8,7 +8,7 @@
 #include "spheretree/build.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <array>
 #include <memory>

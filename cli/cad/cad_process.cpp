@@ -6,7 +6,7 @@
 #include "cli/modules/module.h"
 #include "spheretree/error.h"
 #include "spheretree/program_output.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "cli/cad/cad_message.h"
 #include "simplifier/cad/cad_file.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <cerrno>
 #include <csignal>

@@ -8,7 +8,7 @@
 #include "cli/text/json.h"
 #include "collide/distance.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

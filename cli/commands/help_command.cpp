@@ -5,7 +5,7 @@
 #include "cli/help/usage_error.h"
 #include "cli/text/exit_code.h"
 #include "spheretree/error.h"
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <CLI/CLI.hpp>
 

@@ -15,7 +15,7 @@
 #include "spheretree/check.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
-#include "spheretree/parse_json.h"
+#include "spheretree/text/parse_json.h"
 #include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 

@@ -6,7 +6,7 @@
 #include "cli/text/exit_code.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <CLI/CLI.hpp>
 

@@ -3,7 +3,7 @@
 
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <CLI/CLI.hpp>
 

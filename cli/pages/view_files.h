@@ -3,7 +3,7 @@
 
 #include "cli/pages/view_page.h"
 #include "cli/text/json.h"
-#include "spheretree/parse_json.h"
+#include "spheretree/text/parse_json.h"
 #include "spheretree/sphere.h"
 
 #include <filesystem>

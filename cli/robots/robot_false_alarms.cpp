@@ -4,7 +4,7 @@
 #include "cli/help/command_specification.h"
 #include "robot/model/link_spheres.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <CLI/CLI.hpp>
 

@@ -6,7 +6,7 @@
 #include "robot/pairs/link_pairs_file.h"
 #include "spheretree/build.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 #include "spheretree/tree_file.h"
 
 #include <climits>

@@ -3,7 +3,7 @@
 
 #include "cli/text/message.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <CLI/CLI.hpp>
 

@@ -2,7 +2,7 @@
 #include "cli/text/next_step.h"
 
 #include "cli/text/message.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <cctype>
 #include <filesystem>

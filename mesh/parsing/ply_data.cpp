@@ -2,7 +2,7 @@
 #include "mesh/parsing/ply_data.h"
 
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

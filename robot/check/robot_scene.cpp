@@ -5,7 +5,7 @@
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
 #include "spheretree/moved_from.h"
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>

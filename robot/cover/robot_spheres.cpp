@@ -6,7 +6,7 @@
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
 #include "spheretree/error.h"
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 #include "spheretree/rounding.h"
 
 #include <algorithm>

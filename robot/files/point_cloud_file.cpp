@@ -6,7 +6,7 @@
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

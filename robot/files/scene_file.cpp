@@ -3,9 +3,9 @@
 
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/nearest_name.h"
-#include "spheretree/parse_json.h"
-#include "spheretree/text.h"
+#include "spheretree/text/nearest_name.h"
+#include "spheretree/text/parse_json.h"
+#include "spheretree/text/text.h"
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>

@@ -4,8 +4,8 @@
 #include "robot/files/internal/text_lines.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/nearest_name.h"
-#include "spheretree/text.h"
+#include "spheretree/text/nearest_name.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <optional>

@@ -6,7 +6,7 @@
 #include "robot/files/internal/xacro.h"
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <cmath>
 #include <string>

@@ -5,7 +5,7 @@
 #include "robot/formats/internal/sphere_documents.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "robot/files/internal/spheres_in_metres.h"
 #include "robot/formats/internal/sphere_documents.h"
 #include "spheretree/error.h"
-#include "spheretree/parse_json.h"
+#include "spheretree/text/parse_json.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 #include "robot/formats/internal/yaml_nodes.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <optional>
 #include <set>

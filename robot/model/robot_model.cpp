@@ -4,7 +4,7 @@
 #include "collide/kernels/check_cache.h"
 #include "spheretree/error.h"
 #include "spheretree/moved_from.h"
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <cmath>
 #include <numbers>

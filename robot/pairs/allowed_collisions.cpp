@@ -5,7 +5,7 @@
 #include "robot/pairs/internal/proof_scope.h"
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 #include "mesh/io/internal/collada_document.h"
 
 #include "spheretree/error.h"
-#include "spheretree/parser_fault.h"
-#include "spheretree/text.h"
+#include "spheretree/text/parser_fault.h"
+#include "spheretree/text/text.h"
 
 #include <limits>
 #include <optional>

@@ -2,7 +2,7 @@
 #include "mesh/io/internal/gltf_document.h"
 
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <array>
 #include <cmath>

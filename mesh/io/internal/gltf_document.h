@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/parse_json.h"
+#include "spheretree/text/parse_json.h"
 
 #include <nlohmann/json.hpp>
 

@@ -6,7 +6,7 @@
 #include "mesh/io/internal/placed_part.h"
 #include "mesh/io/internal/scene_budget.h"
 #include "mesh/io/internal/scene_file.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <cstddef>

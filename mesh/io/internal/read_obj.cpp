@@ -3,7 +3,7 @@
 #include "mesh/io/internal/mesh_readers.h"
 #include "mesh/parsing/text_scanner.h"
 #include "spheretree/rounding.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

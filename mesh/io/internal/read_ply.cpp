@@ -3,7 +3,7 @@
 #include "mesh/io/internal/mesh_readers.h"
 #include "mesh/parsing/ply_data.h"
 #include "spheretree/rounding.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <span>

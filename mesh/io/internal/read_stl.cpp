@@ -4,7 +4,7 @@
 #include "mesh/parsing/text_scanner.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <bit>

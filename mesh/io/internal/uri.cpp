@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/io/internal/uri.h"
 
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #include "mesh/io/internal/xml_events.h"
 
 #include "spheretree/error.h"
-#include "spheretree/parser_fault.h"
+#include "spheretree/text/parser_fault.h"
 
 #include <exception>
 #include <expat.h>

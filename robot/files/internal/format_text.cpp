@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/format_text.h"
 
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

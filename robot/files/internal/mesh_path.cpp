@@ -4,7 +4,7 @@
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <cstddef>

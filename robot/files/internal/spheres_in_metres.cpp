@@ -3,7 +3,7 @@
 
 #include "spheretree/error.h"
 #include "spheretree/sphere_file.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <string>
 #include <utility>

@@ -2,7 +2,7 @@
 #include "robot/files/internal/text_lines.h"
 
 #include "spheretree/error.h"
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 

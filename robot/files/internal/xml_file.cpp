@@ -3,8 +3,8 @@
 
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/parser_fault.h"
-#include "spheretree/text.h"
+#include "spheretree/text/parser_fault.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <cstddef>

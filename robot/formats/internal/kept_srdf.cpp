@@ -4,7 +4,7 @@
 #include "robot/formats/internal/sphere_documents.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
-#include "spheretree/xml_markup.h"
+#include "spheretree/text/xml_markup.h"
 
 #include <algorithm>
 #include <optional>

@@ -2,18 +2,6 @@
 #pragma once
 
 // What a parser says of a text that it refuses, without the words that are for programmers.
-//
-// @code{.cpp}
-// #include <spherule/spheretree/parser_fault.h>
-// #include <cassert>
-//
-// using namespace spherule::internal;
-// assert(json_fault("[json.exception.parse_error.101] parse error at line 1, column 9: syntax "
-//                   "error while parsing object key - unexpected '}'; expected string literal") ==
-//        "line 1, column 9: is not JSON: unexpected '}'; expected string literal");
-// assert(xml_fault("XML_ERROR_EMPTY_DOCUMENT", 0) == "is not XML: nothing is in it");
-// assert(fault_of_large_tag("<robot name='r'/>").empty());
-// @endcode
 
 #include <string>
 #include <string_view>

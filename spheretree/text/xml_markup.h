@@ -2,16 +2,6 @@
 #pragma once
 
 // Where the markup of an XML text ends, told without parsing it.
-//
-// @code{.cpp}
-// #include <spherule/spheretree/xml_markup.h>
-// #include <cassert>
-//
-// using namespace spherule::internal;
-// assert(end_of_tag("<a b='>'/>c", 0) == 10);
-// assert(end_of_other_markup("<!-- <a> --><b/>", 0) == 12);
-// assert(end_of_other_markup("<b/>", 0) == 0);
-// @endcode
 
 #include <cstddef>
 #include <string_view>

@@ -2,20 +2,8 @@
 #pragma once
 
 // JSON texts, with what nlohmann's parser lets pass refused.
-//
-// @code{.cpp}
-// #include <spherule/spheretree/error.h>
-// #include <spherule/spheretree/parse_json.h>
-// #include <nlohmann/json.hpp>
-// #include <cassert>
-//
-// const auto refuse = [](const std::string& reason) { throw spherule::Error("text", reason); };
-// const std::string text = R"({"radius": 2.5})";
-// const auto document = spherule::internal::parse_json<nlohmann::json>(text, refuse);
-// assert(document.root()["radius"] == 2.5);
-// @endcode
 
-#include "spheretree/parser_fault.h"
+#include "spheretree/text/parser_fault.h"
 
 #include <cstddef>
 #include <set>

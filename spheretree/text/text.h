@@ -3,20 +3,6 @@
 
 // What all readers of text share: numbers, words, lines, and quotes for messages. Does not depend
 // on the locale.
-//
-// @code{.cpp}
-// #include <spherule/spheretree/text.h>
-// #include <cassert>
-//
-// assert(spherule::internal::finite_number("1.5e3") == 1500.0);
-// assert(!spherule::internal::finite_number("1.5 mm"));
-// assert(spherule::internal::number_text(0.1) == "0.1");
-// assert(spherule::internal::words_of("v 0.5  1 2").size() == 4);
-// assert(spherule::internal::percent_escape("%20.stl") == ' ');
-// std::string_view text = "one\r\ntwo\rthree\n";
-// assert(spherule::internal::count_line_ends(text) == 3);
-// assert(spherule::internal::take_line(text) == "one" && text == "two\rthree\n");
-// @endcode
 
 #include <cstddef>
 #include <cstdint>

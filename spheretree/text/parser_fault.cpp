@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/parser_fault.h"
+#include "spheretree/text/parser_fault.h"
 
-#include "spheretree/xml_markup.h"
+#include "spheretree/text/xml_markup.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/text.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

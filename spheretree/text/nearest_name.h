@@ -2,16 +2,6 @@
 #pragma once
 
 // Which name may have been meant, for messages about one that is not known.
-//
-// @code{.cpp}
-// #include <spherule/spheretree/nearest_name.h>
-// #include <cassert>
-// #include <vector>
-//
-// const std::vector<std::string> links{"base", "hand"};
-// assert(spherule::internal::did_you_mean("hnad", links) == "; did you mean hand?");
-// assert(spherule::internal::did_you_mean("torch", links).empty());
-// @endcode
 
 #include <functional>
 #include <span>

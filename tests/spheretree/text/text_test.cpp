@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/text.h"
-
-#include "spheretree/median_split.h"
+#include "spheretree/text/text.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
-#include <random>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -108,26 +102,6 @@ TEST(Text, WordsAndQuotes) {
   EXPECT_EQ(internal::in_quotes("a b"), "'a b'");
   EXPECT_EQ(internal::in_quotes(std::string(60, 'x')), "'" + std::string(60, 'x') + "'");
   EXPECT_EQ(internal::in_quotes(std::string(61, 'x')), "'" + std::string(60, 'x') + "...'");
-}
-
-// Against sorted numbers: the halves hold the same ones.
-TEST(MedianSplit, HalvesAreThoseOfTheOrder) {
-  std::mt19937 bits(3);
-  for (std::size_t count = 1; count < 40; ++count) {
-    std::vector<int> items(count);
-    for (int& item : items) item = static_cast<int>(bits() % 1000);
-    std::vector<int> sorted = items;
-    std::sort(sorted.begin(), sorted.end(), std::greater<>());
-    const std::size_t half =
-        internal::split_at_median(std::span(items), [](int item) { return -item; });
-    ASSERT_EQ(half, count / 2);
-    std::sort(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), std::greater<>());
-    std::sort(items.begin() + static_cast<std::ptrdiff_t>(half), items.end(), std::greater<>());
-    ASSERT_EQ(items, sorted);
-  }
-  const Eigen::AlignedBox3d cube(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
-  EXPECT_EQ(internal::longest_axis(cube), 0);
-  EXPECT_EQ(internal::longest_axis({Eigen::Vector3d::Zero(), Eigen::Vector3d(1.0, 2.0, 3.0)}), 2);
 }
 
 }  // namespace

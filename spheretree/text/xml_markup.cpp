@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/xml_markup.h"
+#include "spheretree/text/xml_markup.h"
 
 #include <utility>
 

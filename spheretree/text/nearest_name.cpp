@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/nearest_name.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <algorithm>
 #include <cstddef>
