@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/simplify.h"
+#include "simplifier/option_record.h"
+
+#include "simplifier/zone_file.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 #include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -219,13 +223,6 @@ SimplifyOptions options_from_record(const std::map<std::string, OptionValue>& re
   read.flag("keep-concave-edges", options.keep_concave_edges);
   read.levels("levels", options.levels);
   return options;
-}
-
-SphereFile sphere_file(const Simplification& simplification, double scale) {
-  return {.spheres = simplification.cover.spheres,
-          .certificate = record(simplification.certificate),
-          .options = option_record(simplification.options, scale),
-          .interrupted = simplification.interrupted};
 }
 
 }  // namespace spherule

@@ -6,7 +6,6 @@
 #include "simplifier/internal/stages.h"
 #include "simplifier/support/stopwatch.h"
 #include "simplifier/support/thread_limit.h"
-#include "spheretree/build.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
 
@@ -22,8 +21,6 @@
 namespace spherule {
 namespace {
 
-constexpr double kDefaultError = 0.01;    // of the box diagonal
-constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges need spheres of radius 2 E
 constexpr double kResolutionOfError = 0.005;
 
 double box_diagonal(const TriangleMesh& mesh) {
@@ -92,13 +89,6 @@ CoverOptions cover_options(const SimplifyOptions& options) {
 }
 
 }  // namespace
-
-void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh) {
-  if (options.max_error == 0.0) options.max_error = kDefaultError * box_diagonal(mesh);
-  if (options.min_external_diameter == 0.0) {
-    options.min_external_diameter = kDefaultDiameter * options.max_error;
-  }
-}
 
 SimplifiedSolid internal::simplified_solid(const TriangleMesh& mesh, const MeshDistance& distance,
                                            const SimplifyOptions& options, std::size_t max_cells) {
@@ -186,38 +176,6 @@ SphereCover cover_solid(const TriangleMesh& mesh, const ExternalSpheres& externa
   const CoverOptions passed = cover_options(options);
   return options.stage2_method ? options.stage2_method->run(mesh, external, passed)
                                : cover(mesh, external, passed);
-}
-
-double tool_diameter(std::span<const Sphere> tool) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Sphere& sphere : tool) {
-    if (!is_usable(sphere)) throw Error("tool", "a sphere is not usable");
-    least = std::min(least, sphere.radius);
-  }
-  if (tool.empty()) throw Error("tool", "holds no sphere");
-  if (least == 0.0) throw Error("tool", "has a sphere of radius 0: nothing is small enough for it");
-  return 2.0 * least;
-}
-
-ExternalOptions external_options(const SimplifyOptions& options) {
-  return {.placement = options.external,
-          .min_external_diameter = options.min_external_diameter,
-          .padding = options.padding,
-          .max_error = options.max_error > 0.0 ? options.max_error
-                                               : options.min_external_diameter / kDefaultDiameter,
-          .tightness = options.tightness,
-          .zones = options.zones,
-          .keep_concave_edges = options.keep_concave_edges,
-          .limit = options.external_limit,
-          .seed = options.seed,
-          .threads = options.threads,
-          .progress = options.progress};
-}
-
-SphereTree sphere_tree(const Simplification& simplification) {
-  const std::vector<Sphere>& spheres = simplification.cover.spheres;
-  if (simplification.levels.empty()) return build_tree(spheres);
-  return level_tree(spheres, simplification.levels).tree;
 }
 
 double proof_resolution(double max_error, double diagonal) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/zones.h"
+#include "simplifier/zone_file.h"
+
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
 #include "spheretree/text/parse_json.h"

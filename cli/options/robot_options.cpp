@@ -4,6 +4,7 @@
 #include "cli/help/command_specification.h"
 #include "cli/options/length_options.h"
 #include "cli/text/next_step.h"
+#include "simplifier/zone_file.h"
 #include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>

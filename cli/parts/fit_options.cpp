@@ -4,7 +4,7 @@
 #include "cli/files/in_file.h"
 #include "cli/help/command_specification.h"
 #include "cli/options/search_options.h"
-#include "simplifier/zones.h"
+#include "simplifier/zone_file.h"
 #include "spheretree/sphere_file.h"
 
 #include <CLI/CLI.hpp>

@@ -6,6 +6,7 @@
 #include "python/bindings/bindings.h"
 #include "python/bindings/certificates.h"
 #include "simplifier/concave_edges.h"
+#include "simplifier/zone_file.h"
 
 #include <pybind11/stl.h>
 

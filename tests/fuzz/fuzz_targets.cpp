@@ -11,7 +11,7 @@
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/pairs/link_pairs_file.h"
-#include "simplifier/zones.h"
+#include "simplifier/zone_file.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/check.h"
 #include "spheretree/error.h"

@@ -3,6 +3,7 @@
 #include "simplifier/zones.h"
 
 #include "simplifier/stage2/local_error.h"
+#include "simplifier/zone_file.h"
 #include "spheretree/error.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/simplify.h"
+#include "simplifier/simplification.h"
+
+#include "simplifier/option_record.h"
+#include "spheretree/build.h"
 
 #include <cstddef>
 #include <iomanip>
@@ -39,6 +42,19 @@ std::string broken_promises(const Simplification& simplification) {
     begin(level.max_error) << " in a level, only by at most " << level.protrusion;
   }
   return out.str();
+}
+
+SphereTree sphere_tree(const Simplification& simplification) {
+  const std::vector<Sphere>& spheres = simplification.cover.spheres;
+  if (simplification.levels.empty()) return build_tree(spheres);
+  return level_tree(spheres, simplification.levels).tree;
+}
+
+SphereFile sphere_file(const Simplification& simplification, double scale) {
+  return {.spheres = simplification.cover.spheres,
+          .certificate = record(simplification.certificate),
+          .options = option_record(simplification.options, scale),
+          .interrupted = simplification.interrupted};
 }
 
 }  // namespace spherule
