@@ -37,13 +37,16 @@ enum class CoverMethod {
   kPaper   // the paper's Algorithm 1, second loop
 };
 
-// How the second stage covers, and how long it may search.
+// How the second stage covers, and how long it may search. What says "kCover:" or "kPaper:" counts
+// for that method; another one leaves it unused, without an error, so that methods can be compared
+// on equal options. Only zones, which are a promise, are refused by a method that does not keep it.
+// fit_levels() says what it uses.
 struct CoverOptions {
   CoverMethod method = CoverMethod::kCover;
   // E: how far the spheres may protrude from S. Positive.
   double max_error = 0.0;
-  // kCover only: zones of an E of their own. Every point of the union of the spheres that lies in
-  // such a zone is at most its `max_error` from S.
+  // kCover: zones of an E of their own. Every point of the union of the spheres that lies in such a
+  // zone is at most its `max_error` from S. Other methods throw Error for one that is below E.
   std::vector<Zone> zones = {};
   // No sphere of the result is smaller than this radius (a tool made of such spheres passes stage 1
   // of what it intersects unchanged). Protrusion may exceed E where it forces a larger sphere.

@@ -116,7 +116,7 @@ CoverFitter::Spheres CoverFitter::run(Spheres proved) {
     return std::max(rounds, watch_.seconds() / options_.seconds);
   };
   begin(std::move(proved));
-  CoverYield yield(options_.effort);
+  CoverYield yield(options_.effort, CoverOptions{}.effort);
   yield.add(best_.spheres.size());
   const int converged =
       std::clamp(options_.effort / kConvergedShare, kConvergedAtLeast, kConvergedAtMost);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/search/cover_search.h"
 
+#include "simplifier/cover.h"
 #include "simplifier/stage2/search/cover_core.h"
 #include "simplifier/stage2/search/cover_yield.h"
 #include "simplifier/stage2/search/lazy_cover_search.h"
@@ -202,7 +203,7 @@ TEST(CoverCore, HoldsTheHeaviestColumnsOfEachRow) {
 
 // Rounds that a search with these counts makes before it ends.
 int rounds_that_pay(int effort, const std::function<std::size_t(int)>& count) {
-  internal::CoverYield yield(effort);
+  internal::CoverYield yield(effort, CoverOptions{}.effort);
   yield.add(count(0));
   for (int round = 1; round < 1000; ++round) {
     yield.add(count(round));

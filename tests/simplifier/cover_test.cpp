@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -140,6 +141,26 @@ TEST_P(CoverByMethod, ScaleAndPlaceDoNotMatter) {
       expect_covered(mesh, fit(mesh, options()), 76);
     }
   }
+}
+
+TEST_P(CoverByMethod, OptionsOfOtherMethodsHaveNoEffect) {
+  const TriangleMesh mesh = mesh_named("l-bracket");
+  CoverOptions others = options();
+  FitShares shares;  // with the effort
+  if (others.method == CoverMethod::kCover) {
+    others.min_internal_diameter = 0.01;
+    others.history = true;
+  } else {
+    shares.effort += 1;
+    others.seconds = 1e-9;
+    others.lower_bound = true;
+    others.on_proved = [](std::size_t) { FAIL(); };
+  }
+  const SphereCover expected = fit(mesh, options()).cover;
+  const SphereCover found = fit(mesh, others, shares).cover;
+  EXPECT_EQ(found.spheres, expected.spheres);
+  EXPECT_TRUE(found.history.empty());
+  EXPECT_EQ(found.lower_bound, 0U);
 }
 
 TEST_P(CoverByMethod, BadOptionsAreRefusedByName) {

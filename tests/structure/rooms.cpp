@@ -77,7 +77,7 @@ const std::vector<Room>& rooms() {
        {},
        true},
       {"simplifier/stage2/search",
-       {"spheretree", "simplifier", "simplifier/support"},
+       {"spheretree", "simplifier/support"},
        {"Eigen", "tbb"},
        {},
        true},

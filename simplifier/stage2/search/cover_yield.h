@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/cover.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -14,9 +12,9 @@ namespace spherule::internal {
 // requested. Time is counted in rounds, so that the answer does not depend on the machine.
 class CoverYield {
  public:
-  // `effort` as in CoverOptions.
-  explicit CoverYield(int effort)
-      : least_(kLeast * std::min(1.0, CoverOptions{}.effort / static_cast<double>(effort))) {}
+  // The effort that is requested, and that of the default (CoverOptions::effort).
+  CoverYield(int effort, int default_effort)
+      : least_(kLeast * std::min(1.0, default_effort / static_cast<double>(effort))) {}
 
   // After the first answer and after each round, with the count proved by then.
   void add(std::size_t count) { counts_.push_back(count); }
