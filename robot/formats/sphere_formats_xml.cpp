@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/format_text.h"
+#include "robot/files/internal/mesh_name.h"
 #include "robot/files/internal/xacro.h"
 #include "robot/formats/internal/sphere_documents.h"
 #include "robot/formats/internal/sphere_leaves.h"
@@ -83,32 +84,19 @@ void replace_collisions(XMLDocument& document, XMLElement& link,
   }
 }
 
-// A file's name as a URDF gives it, a path with or without file:// before it; other schemes are no
-// paths.
-struct GivenPath {
-  std::string scheme;
-  fs::path path;
-};
-
-GivenPath given_path(std::string_view name) {
-  constexpr std::string_view kFile = "file://";
-  if (name.starts_with(kFile)) return {std::string(kFile), name.substr(kFile.size())};
-  if (name.find("://") != std::string_view::npos) return {};
-  return {"", name};
-}
-
 // Makes relative file names in `element` and below, given from folder `old_folder`, relative to
 // `new_folder`.
 void move_files(XMLElement& element, const fs::path& old_folder, const fs::path& new_folder) {
   const std::string_view name = element.Name();
   if (name == "mesh" || name == "texture") {
     const char* file = element.Attribute("filename");
-    const GivenPath given = given_path(file ? file : "");
-    if (!given.path.empty() && given.path.is_relative()) {
-      const fs::path target = (old_folder / given.path).lexically_normal();
+    const MeshName given = mesh_name(file ? file : "");
+    const bool is_path = given.kind == MeshName::Kind::kPath || given.kind == MeshName::Kind::kFile;
+    if (is_path && !given.rest.empty() && fs::path(given.rest).is_relative()) {
+      const fs::path target = (old_folder / given.rest).lexically_normal();
       const fs::path from_there = target.lexically_relative(new_folder);
       const fs::path& moved = from_there.empty() ? target : from_there;
-      element.SetAttribute("filename", (given.scheme + moved.string()).c_str());
+      element.SetAttribute("filename", (std::string(given.scheme) + moved.string()).c_str());
     }
   }
   for (auto* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {

@@ -39,6 +39,15 @@ int digit_of_hex(char c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
+// The character that the first three of a text stand for, where they are an escape.
+std::optional<char> percent_escape(std::string_view text) {
+  if (text.size() < 3 || text[0] != '%') return std::nullopt;
+  const int high = digit_of_hex(text[1]);
+  const int low = digit_of_hex(text[2]);
+  if (high < 0 || low < 0 || (high == 0 && low == 0)) return std::nullopt;
+  return static_cast<char>(16 * high + low);
+}
+
 }  // namespace
 
 std::optional<double> finite_number(std::string_view text) {
@@ -89,12 +98,15 @@ std::size_t count_line_ends(std::string_view text) {
   return count;
 }
 
-std::optional<char> percent_escape(std::string_view text) {
-  if (text.size() < 3 || text[0] != '%') return std::nullopt;
-  const int high = digit_of_hex(text[1]);
-  const int low = digit_of_hex(text[2]);
-  if (high < 0 || low < 0 || (high == 0 && low == 0)) return std::nullopt;
-  return static_cast<char>(16 * high + low);
+PercentDecoded percent_decoded(std::string_view text) {
+  PercentDecoded result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::optional<char> character = percent_escape(text.substr(i));
+    if (!character && text[i] == '%') result.has_other_percents = true;
+    result.text += character.value_or(text[i]);
+    if (character) i += 2;
+  }
+  return result;
 }
 
 std::string in_quotes(std::string_view text) {

@@ -35,9 +35,13 @@ std::string_view take_line(std::string_view& text);
 // How many such ends of lines a text has.
 std::size_t count_line_ends(std::string_view text);
 
-// The character that the first three of a text stand for in a URL (%20), where that is one and not
-// the end of a string.
-std::optional<char> percent_escape(std::string_view text);
+// A text of a URL with the characters that it writes as %20 and the like. What is no such escape,
+// and %00, which would end a string, stays.
+struct PercentDecoded {
+  std::string text;
+  bool has_other_percents = false;  // some that begin no escape
+};
+PercentDecoded percent_decoded(std::string_view text);
 
 // A text in quotes for a message; of a long one the first 60 characters.
 std::string in_quotes(std::string_view text);

@@ -43,21 +43,6 @@ std::optional<std::string> from_base64(std::string_view text) {
   return bytes;
 }
 
-std::optional<std::string> without_percents(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      result.push_back(text[i]);
-      continue;
-    }
-    const std::optional<char> character = percent_escape(text.substr(i));
-    if (!character) return std::nullopt;
-    result.push_back(*character);
-    i += 2;
-  }
-  return result;
-}
-
 }  // namespace
 
 std::optional<std::string> bytes_of_data_uri(std::string_view uri) {
@@ -72,9 +57,11 @@ std::optional<std::filesystem::path> file_below(const std::filesystem::path& fol
   // A colon before any slash ends a scheme.
   const std::size_t colon = reference.find(':');
   if (colon != std::string_view::npos && colon < reference.find('/')) return std::nullopt;
-  const std::optional<std::string> name = without_percents(reference);
-  if (!name || name->empty() || name->find('\0') != std::string::npos) return std::nullopt;
-  const std::filesystem::path relative(*name);
+  const PercentDecoded name = percent_decoded(reference);
+  if (name.has_other_percents || name.text.empty() || name.text.find('\0') != std::string::npos) {
+    return std::nullopt;
+  }
+  const std::filesystem::path relative(name.text);
   if (relative.is_absolute()) return std::nullopt;
   std::error_code error;
   const std::filesystem::path root =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/internal/mesh_path.h"
 
+#include "robot/files/internal/mesh_name.h"
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -35,21 +35,11 @@ std::string package_name(const fs::path& folder) {
   }
 }
 
-// With the characters that a URL writes as %20 and the like; what is no escape stays.
-std::string unescaped(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::optional<char> character = percent_escape(text.substr(i));
-    result += character.value_or(text[i]);
-    if (character) i += 2;
-  }
-  return result;
-}
-
-// The file `rest` below a folder: of that name or, as in a URL, of the name that it escapes.
+// The file `rest` below a folder: of that name or, as in a URL, of the name that it escapes. A
+// percent sign that begins no escape stays.
 fs::path below(const fs::path& folder, std::string_view rest) {
   const fs::path path = folder / rest;
-  const fs::path meant = folder / unescaped(rest);
+  const fs::path meant = folder / percent_decoded(rest).text;
   return !is_file(path) && is_file(meant) ? meant : path;
 }
 
@@ -75,25 +65,31 @@ fs::path MeshPaths::package_root(const std::string& package) {
                   "folder above the URDF file or beside one of them");
 }
 
+fs::path MeshPaths::in_package(const std::string& name, std::string_view rest) {
+  const std::size_t begin = std::min(rest.find_first_not_of('/'), rest.size());
+  const std::size_t slash = std::min(rest.find('/', begin), rest.size());
+  const std::string package(rest.substr(begin, slash - begin));
+  if (package.empty()) throw Error(name, "it names no package");
+  auto root = packages_.find(package);
+  if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;
+  return below(root->second, rest.substr(std::min(slash + 1, rest.size())));
+}
+
 fs::path MeshPaths::find(const std::string& name) {
-  constexpr std::string_view kPackage = "package://";
-  constexpr std::string_view kFile = "file://";
-  const std::string_view view = name;
+  const MeshName given = mesh_name(name);
   fs::path path;
-  if (view.starts_with(kPackage)) {
-    const std::size_t begin = std::min(view.find_first_not_of('/', kPackage.size()), view.size());
-    const std::size_t slash = std::min(view.find('/', begin), view.size());
-    const std::string package(view.substr(begin, slash - begin));
-    if (package.empty()) throw Error(name, "it names no package");
-    auto root = packages_.find(package);
-    if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;
-    path = below(root->second, view.substr(std::min(slash + 1, view.size())));
-  } else if (view.starts_with(kFile)) {
-    path = below(folder_, view.substr(kFile.size()));
-  } else if (view.find("://") != std::string_view::npos) {
-    throw Error(name, "only package:// and file:// can be followed");
-  } else {
-    path = folder_ / view;
+  switch (given.kind) {
+    case MeshName::Kind::kPackage:
+      path = in_package(name, given.rest);
+      break;
+    case MeshName::Kind::kFile:
+      path = below(folder_, given.rest);
+      break;
+    case MeshName::Kind::kPath:
+      path = folder_ / given.rest;
+      break;
+    case MeshName::Kind::kOtherScheme:
+      throw Error(name, "only package:// and file:// can be followed");
   }
   path = path.lexically_normal();
   if (!is_file(path)) throw Error(name, "there is no such file: " + path.string());

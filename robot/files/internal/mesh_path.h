@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherule::internal {
@@ -20,6 +21,8 @@ class MeshPaths {
   std::filesystem::path find(const std::string& name);
 
  private:
+  // Of `name`, what stands behind package://: a package and a file in it.
+  std::filesystem::path in_package(const std::string& name, std::string_view rest);
   std::filesystem::path package_root(const std::string& package);
 
   std::filesystem::path folder_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule::test {
@@ -88,11 +89,17 @@ TEST(Text, Lines) {
 }
 
 TEST(Text, EscapesOfUrls) {
-  EXPECT_EQ(internal::percent_escape("%20.stl"), ' ');
-  EXPECT_EQ(internal::percent_escape("%aF"), '\xaf');
-  for (const char* none : {"", "a%20", "%", "%2", "%2g", "%g2", "%00", "%%20"}) {
-    EXPECT_FALSE(internal::percent_escape(none)) << none;
+  for (const auto& [text, decoded] : std::vector<std::pair<std::string, std::string>>{
+           {"", ""}, {"a", "a"}, {"%20.stl", " .stl"}, {"a%aF", "a\xaf"}, {"%2541", "%41"}}) {
+    EXPECT_EQ(internal::percent_decoded(text).text, decoded) << text;
+    EXPECT_FALSE(internal::percent_decoded(text).has_other_percents) << text;
   }
+  for (const std::string other : {"%", "a%2", "%2g", "%g2", "%00"}) {
+    EXPECT_EQ(internal::percent_decoded(other).text, other);
+    EXPECT_TRUE(internal::percent_decoded(other).has_other_percents) << other;
+  }
+  EXPECT_EQ(internal::percent_decoded("%%20%").text, "% %");
+  EXPECT_TRUE(internal::percent_decoded("%%20").has_other_percents);
 }
 
 TEST(Text, WordsAndQuotes) {
