@@ -21,6 +21,7 @@
 #include "cli/text/message.h"
 #include "cli/text/next_step.h"
 #include "cli/text/progress.h"
+#include "robot/cover/repair_robot.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"
 

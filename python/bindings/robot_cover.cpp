@@ -6,6 +6,7 @@
 #include "python/bindings/long_run.h"
 #include "python/bindings/robots.h"
 #include "robot/cover/audit_robot.h"
+#include "robot/cover/repair_robot.h"
 #include "robot/cover/robot_spheres.h"
 
 #include <pybind11/stl.h>

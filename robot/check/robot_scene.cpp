@@ -5,8 +5,8 @@
 #include "robot/pairs/link_pairs.h"
 #include "spheretree/error.h"
 #include "spheretree/moved_from.h"
-#include "spheretree/text/nearest_name.h"
 #include "spheretree/rounding.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <algorithm>
 #include <cmath>

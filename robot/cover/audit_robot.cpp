@@ -2,6 +2,7 @@
 #include "robot/cover/audit_robot.h"
 
 #include "mesh/geometry/surface_sampling.h"
+#include "robot/cover/internal/link_parts.h"
 #include "robot/cover/internal/link_solid.h"
 #include "robot/cover/internal/shapes_in_spheres.h"
 #include "robot/model/kinematics.h"
@@ -11,71 +12,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
-#include <optional>
-#include <set>
 #include <utility>
-#include <variant>
 
 namespace spherule {
 namespace {
 
 using Eigen::Vector3d;
+using internal::LinkParts;
 
 constexpr std::size_t kSharePoints = 20000;
-// Chord error of the meshes around curved primitives.
-constexpr double kChordError = LinkMeshOptions{}.chord_error;
-
-struct LinkParts {
-  std::string link;
-  std::size_t index = 0;  // of the link in the description
-  std::optional<TriangleMesh> mesh;
-  double chord_error = 0.0;  // of the mesh, which holds what it stands for; 0 without curved shapes
-  std::vector<Sphere> spheres;
-};
-
-bool has_curved_shapes(const LinkDescription& link, LinkGeometry geometry) {
-  return std::ranges::any_of(link_shapes(link, geometry), [](const LinkShape& shape) {
-    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
-    return primitive != nullptr && !std::holds_alternative<Box>(*primitive);
-  });
-}
-
-// Meshes and spheres of all links, checked; the links that the robot has not got go to `unknown`.
-std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
-                                LinkGeometry geometry, std::vector<std::string>* unknown) {
-  std::vector<LinkParts> parts;
-  std::map<std::string, std::size_t> index;
-  for (const LinkDescription& link : robot.links) {
-    index[link.name] = parts.size();
-    parts.push_back({link.name,
-                     parts.size(),
-                     link_mesh(link, {.geometry = geometry, .chord_error = kChordError}),
-                     has_curved_shapes(link, geometry) ? kChordError : 0.0,
-                     {}});
-  }
-  if (std::none_of(parts.begin(), parts.end(), [](const auto& part) { return part.mesh; })) {
-    throw Error("robot \"" + robot.name + "\"", geometry == LinkGeometry::kVisual
-                                                    ? "has no visual geometry"
-                                                    : "has no collision geometry");
-  }
-  std::set<std::string> seen;
-  for (const LinkSpheres& link : spheres) {
-    const std::string subject = "link \"" + link.link + "\"";
-    if (!seen.insert(link.link).second) throw Error(subject, "has spheres twice");
-    if (!std::all_of(link.spheres.begin(), link.spheres.end(), is_usable)) {
-      throw Error(subject, "has a sphere that is not usable");
-    }
-    const auto found = index.find(link.link);
-    if (found != index.end()) {
-      parts[found->second].spheres = link.spheres;
-    } else if (unknown && !link.spheres.empty()) {
-      unknown->push_back(link.link);
-    }
-  }
-  return parts;
-}
 
 // Of points spread over the surface: one in every equal share of its area.
 double uncovered_share(const LinkParts& part) {
@@ -186,16 +131,6 @@ ConfigurationAudit audit_placed(const PlacedRobot& placed, std::span<const LinkP
   return result;
 }
 
-// What `work` makes; an Error says of which link it is.
-template <typename Work>
-auto of_link(const std::string& link, Work work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    throw Error("link '" + link + "', " + error.subject(), error.reason());
-  }
-}
-
 // What is proved of a mesh around curved shapes holds of these, which are in it and come within the
 // chord error of all its points: leaks are that much shallower at most, spheres protrude by that
 // much more at most, and so much deeper their surface may leak, but not deeper than the whole.
@@ -240,17 +175,6 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
   audit.warnings = solid.warnings();
 }
 
-LinkRepair repaired(const LinkParts& part, const RobotRepairOptions& options) {
-  const internal::LinkSolid solid(*part.mesh,
-                                  {.max_error = options.max_error, .threads = options.threads});
-  LinkRepair result{
-      .link = part.link, .repair = {}, .certificate = {}, .warnings = solid.warnings()};
-  result.repair = repair(*part.mesh, solid.external(), part.spheres,
-                         {.max_error = options.max_error, .threads = options.threads});
-  result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options());
-  return result;
-}
-
 // Before long work is done for nothing.
 void check_configurations(const RobotDescription& robot,
                           const std::vector<std::vector<double>>& configurations) {
@@ -265,10 +189,6 @@ void check_configurations(const RobotDescription& robot,
   }
 }
 
-void report(const Progress& progress, std::size_t done, std::size_t all, const std::string& link) {
-  if (progress) progress(static_cast<double>(done) / static_cast<double>(all), link.c_str());
-}
-
 }  // namespace
 
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
@@ -279,14 +199,15 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
   }
   check_configurations(robot, options.configurations);
   const std::vector<LinkParts> parts =
-      parts_of(robot, spheres, options.geometry, &result.unknown_links);
+      internal::parts_of(robot, spheres, options.geometry, &result.unknown_links);
   const std::size_t steps = parts.size() + options.configurations.size();
   result.links_covered = true;
   for (const LinkParts& part : parts) {
-    report(options.progress, part.index, steps, part.link);
+    internal::report(options.progress, part.index, steps, part.link);
     LinkAudit audit{.link = part.link, .spheres = part.spheres.size()};
     if (part.mesh) {
-      of_link(part.link, [&] { certify_link(part, robot.links[part.index], options, audit); });
+      internal::of_link(part.link,
+                        [&] { certify_link(part, robot.links[part.index], options, audit); });
       if (!audit.certificate->covered) {
         audit.uncovered_share = uncovered_share(part);
         result.links_covered = false;
@@ -296,33 +217,12 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
   }
   result.configurations_covered = true;
   for (const std::vector<double>& configuration : options.configurations) {
-    report(options.progress, parts.size() + result.configurations.size(), steps, "configurations");
+    internal::report(options.progress, parts.size() + result.configurations.size(), steps,
+                     "configurations");
     const PlacedRobot placed(robot, parts, configuration);
     result.configurations.push_back(audit_placed(placed, parts, result.links, options.threads));
     if (result.configurations.back().uncovered_depth.upper > 0.0) {
       result.configurations_covered = false;
-    }
-  }
-  return result;
-}
-
-RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
-                         const RobotRepairOptions& options) {
-  RobotRepair result;
-  result.spheres.assign(spheres.begin(), spheres.end());
-  const std::vector<LinkParts> parts = parts_of(robot, spheres, options.geometry, nullptr);
-  for (const LinkParts& part : parts) {
-    report(options.progress, part.index, parts.size(), part.link);
-    if (!part.mesh) continue;
-    result.links.push_back(of_link(part.link, [&] { return repaired(part, options); }));
-    const std::vector<Sphere>& mended = result.links.back().repair.spheres;
-    const auto there =
-        std::find_if(result.spheres.begin(), result.spheres.end(),
-                     [&](const LinkSpheres& link) { return link.link == part.link; });
-    if (there != result.spheres.end()) {
-      there->spheres = mended;
-    } else {
-      result.spheres.push_back({part.link, mended});
     }
   }
   return result;

@@ -6,8 +6,8 @@
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
 #include "spheretree/error.h"
-#include "spheretree/text/nearest_name.h"
 #include "spheretree/rounding.h"
+#include "spheretree/text/nearest_name.h"
 
 #include <algorithm>
 #include <atomic>

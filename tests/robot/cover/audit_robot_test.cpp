@@ -2,6 +2,7 @@
 #include "robot/cover/audit_robot.h"
 
 #include "robot/cover/internal/link_solid.h"
+#include "robot/cover/repair_robot.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "spheretree/error.h"

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/cover/repair_robot.h"
+
+#include "robot/cover/internal/link_parts.h"
+#include "robot/cover/internal/link_solid.h"
+
+#include <algorithm>
+
+namespace spherule {
+namespace {
+
+LinkRepair repaired(const internal::LinkParts& part, const RobotRepairOptions& options) {
+  const internal::LinkSolid solid(*part.mesh,
+                                  {.max_error = options.max_error, .threads = options.threads});
+  LinkRepair result{
+      .link = part.link, .repair = {}, .certificate = {}, .warnings = solid.warnings()};
+  result.repair = repair(*part.mesh, solid.external(), part.spheres,
+                         {.max_error = options.max_error, .threads = options.threads});
+  result.certificate = certify(*part.mesh, result.repair.spheres, solid.certify_options());
+  return result;
+}
+
+}  // namespace
+
+RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                         const RobotRepairOptions& options) {
+  RobotRepair result;
+  result.spheres.assign(spheres.begin(), spheres.end());
+  const std::vector<internal::LinkParts> parts =
+      internal::parts_of(robot, spheres, options.geometry, nullptr);
+  for (const internal::LinkParts& part : parts) {
+    internal::report(options.progress, part.index, parts.size(), part.link);
+    if (!part.mesh) continue;
+    result.links.push_back(internal::of_link(part.link, [&] { return repaired(part, options); }));
+    const std::vector<Sphere>& mended = result.links.back().repair.spheres;
+    const auto there =
+        std::find_if(result.spheres.begin(), result.spheres.end(),
+                     [&](const LinkSpheres& link) { return link.link == part.link; });
+    if (there != result.spheres.end()) {
+      there->spheres = mended;
+    } else {
+      result.spheres.push_back({part.link, mended});
+    }
+  }
+  return result;
+}
+
+}  // namespace spherule
