@@ -15,8 +15,8 @@
 #include "spheretree/check.h"
 #include "spheretree/enclosing_sphere.h"
 #include "spheretree/error.h"
-#include "spheretree/text/parse_json.h"
 #include "spheretree/sphere_file.h"
+#include "spheretree/text/parse_json.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

@@ -3,8 +3,8 @@
 
 #include "cli/pages/view_page.h"
 #include "cli/text/json.h"
-#include "spheretree/text/parse_json.h"
 #include "spheretree/sphere.h"
+#include "spheretree/text/parse_json.h"
 
 #include <filesystem>
 #include <string>

@@ -40,16 +40,6 @@ const char* name_of(ContinuousMotion continuous) {
   return continuous == ContinuousMotion::kAsGiven ? "as-given" : "shortest";
 }
 
-std::string angle_text(double radians, bool in_degrees) {
-  std::ostringstream text;
-  if (in_degrees) {
-    text << radians / kRadiansPerDegree << " degrees";
-  } else {
-    text << radians << " rad";
-  }
-  return text.str();
-}
-
 // Which motions of continuous joints were proved.
 void put_continuous(std::ostream& out, const CheckReport& report) {
   if (!report.turns.continuous) return;
@@ -230,15 +220,6 @@ std::vector<TouchingPair> always_touching(const CheckReport& report) {
                         pair.first.contact.second.kind != CheckedBody::Kind::kObstacle;
                });
   return result;
-}
-
-std::string describe(const TurningMotions& turning, bool in_degrees) {
-  std::ostringstream text;
-  text << turning.count << (turning.count == 1 ? " motion turns" : " motions turn")
-       << " a continuous joint by more than half a turn, the first from line " << turning.line
-       << " to line " << turning.to_line << ": joint " << one_line(turning.joint) << " by "
-       << angle_text(turning.step, in_degrees);
-  return text.str();
 }
 
 std::string check_table(const CheckReport& report) {

@@ -113,9 +113,6 @@ const char* verdict_of(const CheckReport& report);
 // motion, of two or more: their spheres may be too coarse, or they are meant to touch.
 std::vector<TouchingPair> always_touching(const CheckReport& report);
 
-// "2 motions turn a continuous joint by more than half a turn, the first from line 1 to ...".
-std::string describe(const TurningMotions& turning, bool in_degrees);
-
 // For a person, a few lines and a table, and as JSON.
 std::string check_table(const CheckReport& report);
 std::string check_json(const CheckReport& report);

@@ -2,13 +2,13 @@
 #include "cli/robots/turn_review.h"
 
 #include "cli/files/in_file.h"
-#include "cli/robots/check_report.h"
 #include "cli/text/message.h"
 #include "robot/model/shortest_motion.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,6 +25,25 @@ Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory
               ends.positions.begin() + static_cast<std::ptrdiff_t>(i * trajectory.width));
   }
   return ends;
+}
+
+std::string angle_text(double radians, bool in_degrees) {
+  std::ostringstream text;
+  if (in_degrees) {
+    text << radians / kRadiansPerDegree << " degrees";
+  } else {
+    text << radians << " rad";
+  }
+  return text.str();
+}
+
+std::string describe(const TurningMotions& turning, bool in_degrees) {
+  std::ostringstream text;
+  text << turning.count << (turning.count == 1 ? " motion turns" : " motions turn")
+       << " a continuous joint by more than half a turn, the first from line " << turning.line
+       << " to line " << turning.to_line << ": joint " << one_line(turning.joint) << " by "
+       << angle_text(turning.step, in_degrees);
+  return text.str();
 }
 
 TurnReview review_turns(const std::string& urdf, const TrajectoryArguments& arguments,
