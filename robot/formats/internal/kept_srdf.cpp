@@ -42,8 +42,9 @@ XmlParts parts_of(std::string_view text) {
       continue;
     }
     const std::size_t end = end_of_tag(text, at);
-    const bool closes = text[at + 1] == '/';
-    const bool is_whole = !closes && text[end - 2] == '/';
+    const std::string_view markup = text.substr(at, end - at);
+    const bool closes = markup.starts_with("</");
+    const bool is_whole = !closes && markup.ends_with("/>");
     if (closes) --depth;
     if (depth == 0 && (closes || is_whole)) {
       parts.root_end = closes ? at : end - 2;
@@ -51,7 +52,7 @@ XmlParts parts_of(std::string_view text) {
       break;
     }
     if (depth == 1 && !closes) {
-      const std::string_view tag = text.substr(at + 1, end - at - 1);
+      const std::string_view tag = markup.substr(1);
       parts.children.push_back({tag.substr(0, tag.find_first_of(" \t\r\n/>")), at, end});
     }
     if (depth == 1 && closes && !parts.children.empty()) parts.children.back().end = end;

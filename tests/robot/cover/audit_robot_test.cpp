@@ -63,7 +63,7 @@ TEST_F(AuditRobot, LeaksOfCurvedShapesAreTheirOwn) {
   EXPECT_LE(less.uncovered_depth.lower, 0.001);
   EXPECT_GE(less.uncovered_depth.lower, 0.0004);
   EXPECT_GE(less.uncovered_depth.upper, 0.001);
-  if (kSanitized) return;  // each takes seconds there
+  if (test::kSanitized) return;  // each takes seconds there
   EXPECT_EQ(audited(0.0101).uncovered_depth.lower, 0.0);
   EXPECT_EQ(audited(0.0099).uncovered_depth.lower, 0.0);
   const Certificate more = audited(0.02);

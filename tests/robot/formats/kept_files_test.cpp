@@ -278,7 +278,7 @@ TEST_F(KeptFiles, SrdfThatIsNotWellFormedIsRefused) {
   for (const char* const text :
        {"<robot name=\"arm\">< link_sphere_approximation link=\"old\"><sphere center=\"0 0 0\" "
         "radius=\"9\"/></link_sphere_approximation></robot>",
-        "<robot name=\"arm\">< /robot>"}) {
+        "<robot name=\"arm\">< /robot>", "</robot/></r><"}) {
     const auto original = folder_.write("original", text);
     try {
       write_robot_spheres(spheres_, SphereFormat::kSrdf, {.original = original},
