@@ -35,7 +35,7 @@ Zone box_zone(const Vector3d& low, const Vector3d& high, double diameter) {
   return {.shape = AlignedBox3d(low, high), .min_external_diameter = diameter};
 }
 
-constexpr double kStep = 0.9;
+constexpr double kStep = kSanitized ? 0.9 : 0.6;
 constexpr std::array kSteps = {kStep, kSanitized ? 0.67 : 0.51};
 
 ExternalSpheres placed(const TriangleMesh& mesh, std::vector<Zone> zones, double step = kStep) {
