@@ -19,8 +19,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 namespace spherule {
@@ -112,12 +114,18 @@ FloodGrid::Shape grid_shape(const Eigen::AlignedBox3d& box, double rho, double s
   // A step that has vanished, of the least diameters there are, never gets there.
   while (shape.levels <= kMostLevels && std::ldexp(step, shape.levels) < edge) ++shape.levels;
   const double magnitude = internal::largest_coordinate(box) + edge;
-  if (shape.levels + halvings > kMostLevels ||
-      std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude) {
-    throw Error("grid step",
-                "too fine for a model of this size, which is " + std::to_string(edge / step) +
-                    " steps wide: choose a larger max error or min external diameter, or fit the "
-                    "model in parts");
+  const bool is_far = std::ldexp(step, -halvings) < 1e6 * kUnitRoundoff * magnitude;
+  if (is_far || shape.levels + halvings > kMostLevels) {
+    std::ostringstream reason;
+    reason << std::setprecision(3) << "too fine for a model ";
+    if (is_far && magnitude > 10.0 * edge) {
+      reason << "with coordinates of up to " << magnitude << ", which numbers do not tell apart so "
+             << "finely: move it nearer to its origin, or choose";
+    } else {
+      reason << "of this size, which is " << edge / step
+             << " steps wide: fit it in parts, or choose";
+    }
+    throw Error("grid step", reason.str() + " a larger max error or min external diameter");
   }
   shape.origin = box.center() - Vector3d::Constant(std::ldexp(step, shape.levels) / 2.0);
   return shape;

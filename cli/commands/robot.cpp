@@ -10,6 +10,7 @@
 #include "cli/pages/page_output.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/false_alarm_report.h"
+#include "cli/robots/link_warnings.h"
 #include "cli/robots/pair_report.h"
 #include "cli/robots/robot_arguments.h"
 #include "cli/robots/robot_false_alarms.h"
@@ -216,11 +217,10 @@ Json summary_of(const std::string& urdf, const RobotModel& model, const Measured
   return summary;
 }
 
-void print_warnings(const RobotCover& cover, const std::vector<std::string>& wrong_pairs,
+void print_warnings(const RobotCover& cover, LinkWarnings& of_links,
+                    const std::vector<std::string>& wrong_pairs,
                     const std::vector<PostureContact>& contacts) {
-  for (const LinkCover& link : cover.links) {
-    for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
-  }
+  for (const LinkCover& link : cover.links) of_links.print(link);
   for (const std::string& warning : wrong_pairs) warn(warning);
   for (const PostureContact& contact : contacts) warn(describe(contact));
 }
@@ -259,9 +259,11 @@ int cover_links(RobotArguments& arguments) {
   // The first answers of all links are a matter of seconds; the search for a goal has none before
   // its end.
   if (arguments.false_alarms.goal.empty()) interruption.have_answer();
+  LinkWarnings warnings;
   const MeasuredCover measured = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
+    options.on_doubt = warnings.on_doubt(bar);
     return in_file(arguments.urdf,
                    [&] { return run.cover(options, arguments.has_max_error, names_of(disabled)); });
   }();
@@ -289,7 +291,7 @@ int cover_links(RobotArguments& arguments) {
                                                    "spheres of " + robot.name, report));
     if (!arguments.json) std::cout << page_line(arguments.view);
   }
-  print_warnings(result, wrong_pairs(judgement, robot.model), contacts);
+  print_warnings(result, warnings, wrong_pairs(judgement, robot.model), contacts);
   if (plan.names_xacro_for_curobo(robot)) {
     warn("urdf_path of the cuRobo file is " + arguments.urdf +
          ", which cuRobo cannot read: with --format urdf,curobo it is the URDF that is written");

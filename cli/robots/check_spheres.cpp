@@ -2,6 +2,7 @@
 #include "cli/robots/check_spheres.h"
 
 #include "cli/files/in_file.h"
+#include "cli/robots/link_warnings.h"
 #include "cli/robots/sphere_input.h"
 #include "cli/text/message.h"
 #include "cli/text/progress.h"
@@ -64,9 +65,11 @@ SphereRobot read_sphere_robot(const std::string& file, const RobotDescription& r
 
 SphereRobot cover_sphere_robot(const std::string& urdf, const RobotDescription& robot,
                                RobotCoverOptions options) {
+  LinkWarnings warnings;
   const RobotCover covered = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
+    options.on_doubt = warnings.on_doubt(bar);
     return in_file(urdf, [&] { return cover_robot(robot, options); });
   }();
   std::vector<LinkSpheres> spheres;
@@ -74,7 +77,7 @@ SphereRobot cover_sphere_robot(const std::string& urdf, const RobotDescription& 
     if (link.fit && !link.fit->certificate.covered) {
       throw Error(urdf, "link " + link.link + ": its spheres are not proved to cover all of it");
     }
-    for (const std::string& warning : link.warnings) warn("link " + link.link + ": " + warning);
+    warnings.print(link);
     spheres.push_back({link.link, link.spheres});
   }
   SphereRobot result{with_spheres(robot.model, spheres), {}};

@@ -23,7 +23,11 @@ namespace {
 
 // Nobody wants the hundred million spheres that such a link requires.
 constexpr double kMostErrorsAcross = 1e4;
+// No link of a robot is larger than the first, and few than the second; of those, many times E
+// means minutes of work.
 constexpr double kMostMetresAcross = 100.0;
+constexpr double kUsualMetresAcross = 10.0;
+constexpr double kUsualErrorsAcross = 1e3;
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
 
@@ -33,6 +37,7 @@ struct Task {
   TriangleMesh mesh;
   SimplifyOptions options;
   double across = 0.0;  // the diagonal of the mesh's box
+  std::string doubt{};  // about its size; mostly empty
 };
 
 std::string subject_of(const std::string& link) {
@@ -121,6 +126,18 @@ void require_errors_below_sizes(const std::vector<Task>& tasks) {
   throw Error("max error", reason.str());
 }
 
+// A sentence where a link is so large that its meshes are rather in millimetres.
+std::string size_doubt(const Task& task) {
+  const bool is_large =
+      task.across > kUsualMetresAcross && task.across > kUsualErrorsAcross * task.options.max_error;
+  if (!is_large && task.across <= kMostMetresAcross) return "";
+  std::ostringstream text;
+  text << "it is " << task.across << " m across: if its meshes are in millimetres, they need a "
+       << "scale of 0.001";
+  if (is_large) text << "; so many times the max error takes long";
+  return text.str();
+}
+
 std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOptions& options,
                              std::size_t threads) {
   std::vector<Task> tasks;
@@ -150,19 +167,19 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     throw Error(subject_of(link.name), reason.str());
   });
   require_errors_below_sizes(tasks);
+  for (Task& task : tasks) {
+    task.doubt = size_doubt(task);
+    if (!task.doubt.empty() && options.on_doubt) {
+      options.on_doubt(robot.links[task.link].name, task.doubt);
+    }
+  }
   return tasks;
 }
 
-std::vector<std::string> warnings_of(const MeshReport& report, const Simplification& fit,
-                                     double weld) {
+std::vector<std::string> warnings_of(const Task& task, const Simplification& fit, double weld) {
+  const MeshReport report = mesh_report(task.mesh, {.self_intersections = false});
   std::vector<std::string> warnings;
-  const double across = report.box.diagonal().norm();
-  if (across > kMostMetresAcross) {
-    std::ostringstream text;
-    text << "it is " << across << " m across: if its meshes are in millimetres, they need a scale "
-         << "of 0.001";
-    warnings.push_back(text.str());
-  }
+  if (!task.doubt.empty()) warnings.push_back(task.doubt);
   if (!report.closed) {
     std::ostringstream text;
     text << "its mesh is open (" << report.boundary_edges << " edges with one triangle, "
@@ -170,7 +187,7 @@ std::vector<std::string> warnings_of(const MeshReport& report, const Simplificat
          << " with more than two): the surface is covered in any case, but space that things of "
             "the size D can get into counts as outside";
     if (report.boundary_edges > 0 && weld == 0.0) {
-      text << "; if rounding has left cracks, welding within " << kCrack * across
+      text << "; if rounding has left cracks, welding within " << kCrack * task.across
            << " m (--weld) shuts them";
     }
     warnings.push_back(text.str());
@@ -191,8 +208,7 @@ LinkCover cover_link(const std::string& link, const Task& task, double weld) {
   cover.spheres = cover.fit->cover.spheres;
   cover.triangles = task.mesh.triangles.size();
   cover.vertex_error = task.mesh.vertex_error;
-  cover.warnings =
-      warnings_of(mesh_report(task.mesh, {.self_intersections = false}), *cover.fit, weld);
+  cover.warnings = warnings_of(task, *cover.fit, weld);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   cover.seconds = seconds.count();
   return cover;

@@ -22,6 +22,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stop_token>
@@ -61,6 +62,10 @@ struct RobotCoverOptions {
   double seconds = 0.0;                // and its limit in time, for each link; 0: none
   int threads = 0;                     // 0: all; the result does not depend on it
   Progress progress = {};              // the word on what is being done is a link's name
+  // Called before the first link is covered, by the thread that called cover_robot(): with the name
+  // of each link that is over 10 m and over 1,000 E across, or over 100 m, and a sentence that its
+  // meshes may be in millimetres. LinkCover::warnings has it, too.
+  std::function<void(const std::string& link, const std::string& doubt)> on_doubt = {};
   // CoverOptions::stop: every link then gets the fewest spheres proved so far, those whose turn has
   // not come their first answer.
   std::stop_token stop = {};

@@ -10,10 +10,11 @@
 namespace spherule::test {
 namespace {
 
-SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double diameter) {
+SphereCover bounded_cover(const TriangleMesh& mesh, double max_error, double diameter,
+                          int rounds = 0) {
   const ExternalSpheres external =
       place_external_spheres(mesh, {.min_external_diameter = diameter, .max_error = max_error});
-  return cover(mesh, external, {.max_error = max_error, .effort = 0, .lower_bound = true});
+  return cover(mesh, external, {.max_error = max_error, .effort = rounds, .lower_bound = true});
 }
 
 TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
@@ -26,7 +27,7 @@ TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
 }
 
 TEST(CoverBound, IsOneWhereOneSphereDoes) {
-  const SphereCover cube = bounded_cover(cube_mesh(), 0.5, 2.0);
+  const SphereCover cube = bounded_cover(cube_mesh(), 0.5, 2.0, 4);
   EXPECT_EQ(cube.spheres.size(), 1U);
   EXPECT_EQ(cube.lower_bound, 1U);
 }

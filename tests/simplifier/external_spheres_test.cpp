@@ -306,6 +306,21 @@ std::string refused(const ExternalOptions& options, const TriangleMesh& mesh = c
   return "accepted";
 }
 
+TEST(ExternalSpheres, SaysWhetherAModelIsTooLargeOrTooFarFromItsOrigin) {
+  const auto refusal = [](double from, double size) {
+    const TriangleMesh mesh = box_mesh(Vector3d::Constant(from), Vector3d::Constant(from + size));
+    try {
+      place_external_spheres(mesh, options_for(ExternalPlacement::kReachable, 0.04));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_NE(refusal(1e8, 0.1).find("with coordinates of up to 1e+08"), std::string::npos);
+  EXPECT_NE(refusal(0.0, 1e8).find("steps wide: fit it in parts"), std::string::npos);
+  EXPECT_EQ(refusal(1e4, 0.1), "none");
+}
+
 TEST(ExternalSpheres, BadOptionsAreRefusedByName) {
   for (const ExternalPlacement placement : kPlacements) {
     for (const double bad : {0.0, -1.0, kNan, kInfinity, 1e300}) {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <variant>
 #include <vector>
@@ -215,6 +216,38 @@ TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
   EXPECT_EQ(std::find(names.begin(), names.end(), "link1"), names.end());
+}
+
+// A needle of 15 mm, in millimetres that were taken for metres.
+TEST(RobotSpheres, DoubtsALargeLinkBeforeItIsCovered) {
+  const auto told_of = [](double size, double max_error) {
+    RobotDescription robot{.name = "hand", .model = RobotModel("finger")};
+    const Primitive needle = Box{.size = {size, 0.001 * size, 0.001 * size}};
+    robot.links = {{.name = "finger", .collision = {{.name = "", .geometry = needle}}}};
+    RobotCoverOptions options = quick(max_error);
+    std::vector<std::string> told;
+    options.on_doubt = [&](const std::string& link, const std::string& doubt) {
+      told.push_back(link + ": " + doubt);
+    };
+    std::stop_source stop;
+    options.stop = stop.get_token();
+    options.progress = [&](double, const char* what) {
+      told.emplace_back(what);
+      stop.request_stop();
+    };
+    const std::vector<std::string> warnings = cover_robot(robot, options).links[0].warnings;
+    EXPECT_EQ(told.front(), warnings.empty() ? "finger" : "finger: " + warnings[0]);
+    return told.front();
+  };
+  EXPECT_EQ(told_of(101.0, 4.0),
+            "finger: it is 101 m across: if its meshes are in millimetres, they need a scale of "
+            "0.001");
+  if (kSanitized) return;  // each takes seconds there
+  EXPECT_EQ(told_of(15.0, 0.0149),
+            "finger: it is 15 m across: if its meshes are in millimetres, they need a scale of "
+            "0.001; so many times the max error takes long");
+  EXPECT_EQ(told_of(15.0, 0.0151), "finger");
+  EXPECT_EQ(told_of(9.9, 0.0098), "finger");
 }
 
 TEST(RobotSpheres, NamesTheLinksWhoseProofFailed) {

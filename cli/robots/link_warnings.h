@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli/text/progress.h"
+#include "robot/cover/robot_spheres.h"
+
+#include <set>
+#include <string>
+
+namespace spherule {
+
+// The warnings about the links of a robot that is covered, each once on standard error: doubts
+// about sizes before the long work, in which a search for a goal covers links again and again, and
+// the rest after it.
+class LinkWarnings {
+ public:
+  // For the field of that name in the options; refers to this and the bar.
+  decltype(RobotCoverOptions::on_doubt) on_doubt(ProgressBar& bar);
+
+  // Those of a link that were not printed before.
+  void print(const LinkCover& link);
+
+ private:
+  void print(const std::string& link, const std::string& warning);
+
+  std::set<std::string> printed_;
+};
+
+}  // namespace spherule
