@@ -31,8 +31,7 @@ auto at(const XmlElement& element, Make make) {
 // What is in such an element is unknown.
 void refuse_xacro(const XmlElement& element) {
   if (element.tag().starts_with("xacro:")) {
-    element.refuse(
-        "this is for xacro, which makes a URDF of it: rename the file, so that it ends in .xacro");
+    element.refuse(internal::kIsForXacro);
   }
   for (const XmlElement& child : element.children()) refuse_xacro(child);
 }

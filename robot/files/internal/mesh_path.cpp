@@ -2,6 +2,7 @@
 #include "robot/files/internal/mesh_path.h"
 
 #include "robot/files/internal/mesh_name.h"
+#include "robot/files/internal/xacro.h"
 #include "robot/files/internal/xml_file.h"
 #include "spheretree/atomic_file.h"
 #include "spheretree/error.h"
@@ -92,8 +93,9 @@ fs::path MeshPaths::find(const std::string& name) {
       throw Error(name, "only package:// and file:// can be followed");
   }
   path = path.lexically_normal();
-  if (!is_file(path)) throw Error(name, "there is no such file: " + path.string());
-  return path;
+  if (is_file(path)) return path;
+  if (name.find("$(") != name.npos || name.find("${") != name.npos) throw Error(name, kIsForXacro);
+  throw Error(name, "there is no such file: " + path.string());
 }
 
 }  // namespace spherule::internal

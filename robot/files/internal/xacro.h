@@ -6,6 +6,10 @@
 
 namespace spherule::internal {
 
+// Why a file of another name is refused that holds what only that program understands.
+inline constexpr const char* kIsForXacro =
+    "this is for xacro, which makes a URDF of it: rename the file, so that it ends in .xacro";
+
 // Whether the name of the file says that it is one for the program `xacro`: it ends in .xacro.
 bool is_xacro(const std::filesystem::path& path);
 

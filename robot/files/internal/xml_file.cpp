@@ -37,6 +37,16 @@ bool is_utf8(std::string_view text) {
   return follow == 0;
 }
 
+// Why a document is refused whose root is this one; people have robots in other formats, too.
+std::string wrong_root(const std::string& root, std::string_view wanted) {
+  std::string reason = "its root is no <" + std::string(wanted) + ">";
+  if (root == "sdf") return reason + " but <sdf>: an SDF file (Gazebo) has to be made a URDF first";
+  if (root == "mujoco") {
+    return reason + " but <mujoco>: an MJCF file (MuJoCo) has to be made a URDF first";
+  }
+  return reason;
+}
+
 }  // namespace
 
 std::string_view XmlElement::tag() const {
@@ -174,7 +184,7 @@ XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag
   }
   const tinyxml2::XMLElement* const root = document_->RootElement();
   if (root == nullptr || tag != root->Name()) {
-    throw Error(name_, "its root is no <" + std::string(tag) + ">");
+    throw Error(name_, wrong_root(root == nullptr ? "" : root->Name(), tag));
   }
   if (root->NextSiblingElement() != nullptr) throw Error(name_, "it has more than one root");
   for (const tinyxml2::XMLNode* node = document_->FirstChild(); node; node = node->NextSibling()) {
