@@ -28,6 +28,7 @@ constexpr double kMostErrorsAcross = 1e4;
 constexpr double kMostMetresAcross = 100.0;
 constexpr double kUsualMetresAcross = 10.0;
 constexpr double kUsualErrorsAcross = 1e3;
+constexpr const char* kMillimetres = "<mesh scale=\"0.001 0.001 0.001\" .../>";
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
 
@@ -132,8 +133,8 @@ std::string size_doubt(const Task& task) {
       task.across > kUsualMetresAcross && task.across > kUsualErrorsAcross * task.options.max_error;
   if (!is_large && task.across <= kMostMetresAcross) return "";
   std::ostringstream text;
-  text << "it is " << task.across << " m across: if its meshes are in millimetres, they need a "
-       << "scale of 0.001";
+  text << "it is " << task.across << " m across: if its meshes are in millimetres, their scale has "
+       << "to be 0.001 (in a URDF: " << kMillimetres << ")";
   if (is_large) text << "; so many times the max error takes long";
   return text.str();
 }
@@ -163,7 +164,8 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     if (task.across <= kMostErrorsAcross * max_error) return;
     std::ostringstream reason;
     reason << "is " << task.across << " m across, too much for a max error of " << max_error
-           << " m: are its meshes in millimetres? Then they need a scale of 0.001";
+           << " m: are its meshes in millimetres? Then their scale has to be 0.001 (in a URDF: "
+           << kMillimetres << ")";
     throw Error(subject_of(link.name), reason.str());
   });
   require_errors_below_sizes(tasks);

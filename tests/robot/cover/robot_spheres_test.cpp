@@ -239,13 +239,13 @@ TEST(RobotSpheres, DoubtsALargeLinkBeforeItIsCovered) {
     EXPECT_EQ(told.front(), warnings.empty() ? "finger" : "finger: " + warnings[0]);
     return told.front();
   };
-  EXPECT_EQ(told_of(101.0, 4.0),
-            "finger: it is 101 m across: if its meshes are in millimetres, they need a scale of "
-            "0.001");
+  const std::string meant =
+      " m across: if its meshes are in millimetres, their scale has to be 0.001 (in a URDF: <mesh "
+      "scale=\"0.001 0.001 0.001\" .../>)";
+  EXPECT_EQ(told_of(101.0, 4.0), "finger: it is 101" + meant);
   if (kSanitized) return;  // each takes seconds there
   EXPECT_EQ(told_of(15.0, 0.0149),
-            "finger: it is 15 m across: if its meshes are in millimetres, they need a scale of "
-            "0.001; so many times the max error takes long");
+            "finger: it is 15" + meant + "; so many times the max error takes long");
   EXPECT_EQ(told_of(15.0, 0.0151), "finger");
   EXPECT_EQ(told_of(9.9, 0.0098), "finger");
 }
