@@ -23,10 +23,6 @@ namespace {
 
 constexpr double kResolutionOfError = 0.005;
 
-double box_diagonal(const TriangleMesh& mesh) {
-  return internal::box_of(mesh).diagonal().norm();
-}
-
 void check_stage2_method(const SimplifyOptions& options) {
   if (!options.stage2_method) return;
   const std::string& name = options.stage2_method->name;
@@ -160,8 +156,8 @@ Simplification internal::simplify(const TriangleMesh& mesh, const SimplifyOption
   CertifyOptions certify_options;
   certify_options.external = &result.external;
   certify_options.zones = used.zones;
-  certify_options.resolution =
-      proof_resolution(tightest_error(used.zones, used.max_error), box_diagonal(mesh));
+  certify_options.resolution = proof_resolution(tightest_error(used.zones, used.max_error),
+                                                internal::box_of(mesh).diagonal().norm());
   certify_options.threads = used.threads;
   certify_options.progress = used.progress;
   result.certificate =

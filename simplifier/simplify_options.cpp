@@ -16,8 +16,9 @@ constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges need spheres 
 }  // namespace
 
 void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh) {
-  if (options.max_error == 0.0)
+  if (options.max_error == 0.0) {
     options.max_error = kDefaultError * internal::box_of(mesh).diagonal().norm();
+  }
   if (options.min_external_diameter == 0.0) {
     options.min_external_diameter = kDefaultDiameter * options.max_error;
   }

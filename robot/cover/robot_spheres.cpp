@@ -23,12 +23,13 @@ namespace {
 
 // Nobody wants the hundred million spheres that such a link requires.
 constexpr double kMostErrorsAcross = 1e4;
-// No link of a robot is larger than the first, and few than the second; of those, many times E
-// means minutes of work.
+// A link above the first length is probably in millimetres, as is one above the second that is
+// also so many times its E across.
 constexpr double kMostMetresAcross = 100.0;
 constexpr double kUsualMetresAcross = 10.0;
 constexpr double kUsualErrorsAcross = 1e3;
-constexpr const char* kMillimetres = "<mesh scale=\"0.001 0.001 0.001\" .../>";
+constexpr const char* kScaleOfMillimetres =
+    "their scale has to be 0.001 (in a URDF: <mesh scale=\"0.001 0.001 0.001\" .../>)";
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
 
@@ -133,8 +134,8 @@ std::string size_doubt(const Task& task) {
       task.across > kUsualMetresAcross && task.across > kUsualErrorsAcross * task.options.max_error;
   if (!is_large && task.across <= kMostMetresAcross) return "";
   std::ostringstream text;
-  text << "it is " << task.across << " m across: if its meshes are in millimetres, their scale has "
-       << "to be 0.001 (in a URDF: " << kMillimetres << ")";
+  text << "it is " << task.across << " m across: if its meshes are in millimetres, "
+       << kScaleOfMillimetres;
   if (is_large) text << "; so many times the max error takes long";
   return text.str();
 }
@@ -164,8 +165,7 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     if (task.across <= kMostErrorsAcross * max_error) return;
     std::ostringstream reason;
     reason << "is " << task.across << " m across, too much for a max error of " << max_error
-           << " m: are its meshes in millimetres? Then their scale has to be 0.001 (in a URDF: "
-           << kMillimetres << ")";
+           << " m: are its meshes in millimetres? Then " << kScaleOfMillimetres;
     throw Error(subject_of(link.name), reason.str());
   });
   require_errors_below_sizes(tasks);
