@@ -10,13 +10,17 @@ function(spherule_declare_precompiled kind)
               <map> <memory> <optional> <set> <span> <sstream> <string> <string_view> <utility>
               <vector> <Eigen/Core> <Eigen/Geometry>)
   set(links Eigen3::Eigen)
+  if(NOT kind STREQUAL library)
+    find_package(nlohmann_json REQUIRED)
+    list(APPEND headers <nlohmann/json.hpp>)
+    list(APPEND links nlohmann_json::nlohmann_json)
+  endif()
   if(kind STREQUAL test)
     find_package(Boost REQUIRED)
     find_package(GTest REQUIRED)
-    find_package(nlohmann_json REQUIRED)
     list(APPEND headers <boost/multiprecision/cpp_bin_float.hpp> <boost/multiprecision/cpp_int.hpp>
-                        <gtest/gtest.h> <nlohmann/json.hpp>)
-    list(APPEND links Boost::headers GTest::gtest nlohmann_json::nlohmann_json)
+                        <gtest/gtest.h>)
+    list(APPEND links Boost::headers GTest::gtest)
   endif()
   set(source ${PROJECT_BINARY_DIR}/precompiled/${kind}.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "")
@@ -39,8 +43,9 @@ function(spherule_precompile target kind)
     spherule_declare_precompiled(${kind})
   endif()
   target_precompile_headers(${target} REUSE_FROM spherule_precompiled_${kind})
-  # Twice as many together as by default: a fifth less to compile.
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
+  # Four times as many together as by default: a fifth less to compile, and a sixth less of the command than
+  # of twice as many.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 32)
   if(kind STREQUAL library)
     # In Clang a local name of one source hides that of a header which only another one includes; g++ takes
     # classes of joined sources for those of headers.

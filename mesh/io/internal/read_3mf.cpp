@@ -40,7 +40,7 @@ constexpr std::string_view kPath(
 constexpr std::string_view kTriangleSets(
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07|");
 
-constexpr int kMaxDepth = 64;
+constexpr int kMaxComponentDepth = 64;
 
 struct Component {
   const struct Object* object;
@@ -178,7 +178,7 @@ class ModelReader : public XmlHandler {
     for (const Component& part : object_->components) {
       object_->depth = std::max(object_->depth, part.object->depth + 1);
     }
-    if (object_->depth > kMaxDepth) in_.fail("components more than 64 deep");
+    if (object_->depth > kMaxComponentDepth) in_.fail("components more than 64 deep");
     open_id_.reset();
   }
 
