@@ -81,7 +81,8 @@ struct Certificate {
   // Proved bounds of the protrusion over |M|; absent if not requested.
   std::optional<Bounds> protrusion_over_mesh;
   // Volume of the union of the spheres over that of the solid mesh, estimated. Absent unless it is
-  // requested, the mesh is closed and there are spheres.
+  // requested, the mesh is closed and there are spheres, and where the estimate finds nothing of
+  // the one or the other: small things far apart, a mesh without volume.
   std::optional<double> volume_ratio;
   // With external spheres and a closed mesh: volume of what stage 1 fills, S without |M|;
   // estimated, and the standard error of that.

@@ -7,9 +7,12 @@
 namespace spherule {
 namespace {
 
-constexpr double kLargestError = 0.1;    // of the largest extent of the part
-constexpr double kSmallestError = 1e-4;  // that units are guessed for
-constexpr double kLeastDiameter = 0.1;   // of E
+// Of the largest extent of the part.
+constexpr double kLargestError = 0.1;
+constexpr double kSmallestError = 1e-3;
+constexpr double kSmallestLikelyError = 1e-4;  // that units are guessed for
+// Of E.
+constexpr double kLeastDiameter = 0.1;
 
 // A unit that lengths may have been meant in, and one that a mesh may be in instead.
 struct UnitPair {
@@ -18,16 +21,42 @@ struct UnitPair {
   double factor() const { return meant->micrometres / mesh->micrometres; }
 };
 
-// The first with which the error would be one that people choose, of a part of this extent. The
-// unit of the mesh may be known.
+// The first with which the error would be one that people choose, of a part of this extent: of an
+// error in millimetres that is too large, or of one in metres that is too small. The unit of the
+// mesh may be known.
 std::optional<UnitPair> likely_units(double error, double extent, const LengthUnit* known) {
-  for (const char* symbol : {"m", "inch", "cm"}) {
-    const UnitPair pair{unit_named("mm"), unit_named(symbol)};
+  const bool is_large = error > kLargestError * extent;
+  const std::vector<UnitPair> candidates =
+      is_large ? std::vector<UnitPair>{{unit_named("mm"), unit_named("m")},
+                                       {unit_named("mm"), unit_named("inch")},
+                                       {unit_named("mm"), unit_named("cm")}}
+               : std::vector<UnitPair>{{unit_named("m"), unit_named("mm")}};
+  for (const UnitPair& pair : candidates) {
     if (known != nullptr && known != pair.mesh) continue;
     const double converted = error * pair.factor();
-    if (converted <= kLargestError * extent && converted >= kSmallestError * extent) return pair;
+    if (converted <= kLargestError * extent && converted >= kSmallestLikelyError * extent)
+      return pair;
   }
   return std::nullopt;
+}
+
+// What to do about an error in a unit that the mesh is not in; empty where none is likely.
+std::string unit_advice(double error, double extent, const ModelUnit& unit) {
+  const LengthUnit* const known = unit.micrometres ? unit_of_size(*unit.micrometres) : nullptr;
+  if (unit.micrometres && known == nullptr) return "";
+  const std::optional<UnitPair> units = likely_units(error, extent, known);
+  if (!units) return "";
+  std::ostringstream text;
+  if (known != nullptr) {
+    text << ": both are in " << known->plural << " (" << unit.origin
+         << "); if the error was meant in " << units->meant->plural << ", use --max-error " << error
+         << units->meant->symbol;
+  } else {
+    text << ": if that is in " << units->mesh->plural << " and the error was meant in "
+         << units->meant->plural << ", use --max-error " << error * units->factor()
+         << ", or for --scale " << 1.0 / units->factor();
+  }
+  return text.str();
 }
 
 }  // namespace
@@ -40,19 +69,14 @@ std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyO
   if (error > kLargestError * extent && extent > 0.0) {
     std::ostringstream text;
     text << "the max error " << error
-         << " is more than a tenth of the part, whose largest extent is " << extent;
-    const LengthUnit* const known = unit.micrometres ? unit_of_size(*unit.micrometres) : nullptr;
-    const std::optional<UnitPair> units =
-        unit.micrometres && known == nullptr ? std::nullopt : likely_units(error, extent, known);
-    if (units && known != nullptr) {
-      text << ": both are in " << known->plural << " (" << unit.origin
-           << "); if the error was meant in " << units->meant->plural << ", use --max-error "
-           << error << units->meant->symbol;
-    } else if (units) {
-      text << ": if that is in " << units->mesh->plural << " and the error was meant in "
-           << units->meant->plural << ", use --max-error " << error * units->factor()
-           << ", or for --scale " << 1.0 / units->factor();
-    }
+         << " is more than a tenth of the part, whose largest extent is " << extent
+         << unit_advice(error, extent, unit);
+    warnings.push_back(text.str());
+  } else if (error > 0.0 && error < kSmallestError * extent) {
+    std::ostringstream text;
+    text << "the max error " << error
+         << " is less than a thousandth of the part, whose largest extent is " << extent
+         << ", which may take very many spheres and hours" << unit_advice(error, extent, unit);
     warnings.push_back(text.str());
   }
   const double diameter = options.min_external_diameter;

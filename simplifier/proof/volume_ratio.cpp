@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -184,7 +185,8 @@ double number_of_lines(std::size_t things) {
 
 }  // namespace
 
-double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> spheres) {
+std::optional<double> estimate_volume_ratio(const TriangleMesh& mesh,
+                                            std::span<const Sphere> spheres) {
   const Lines through_mesh(box_of(mesh), number_of_lines(mesh.triangles.size()));
   const double solid = through_mesh.sum_of_lengths([&](const Axes& axes, const Vector2d& line) {
     std::vector<Crossing> crossings;
@@ -202,7 +204,11 @@ double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> s
         for (const Sphere& sphere : spheres) add_sphere(sphere, axes, line, limits, inside);
         return inside.length();
       });
-  return covered * through_spheres.area / (solid * through_mesh.area);
+  const double mesh_volume = solid * through_mesh.area;
+  const double sphere_volume = covered * through_spheres.area;
+  if (!(mesh_volume > 0.0 && sphere_volume > 0.0)) return std::nullopt;
+  const double ratio = sphere_volume / mesh_volume;
+  return std::isfinite(ratio) ? std::optional(ratio) : std::nullopt;
 }
 
 EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external) {

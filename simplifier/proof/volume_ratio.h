@@ -5,6 +5,7 @@
 #include "simplifier/external_spheres.h"
 #include "spheretree/sphere.h"
 
+#include <optional>
 #include <span>
 
 namespace spherule::internal {
@@ -12,7 +13,9 @@ namespace spherule::internal {
 // Volume of the union of the spheres over the volume inside of a closed mesh, where the winding
 // number is not 0: estimated, each from the exact lengths within it of fixed lines, at most 4096
 // (fewer where there are many triangles), one through each cell of a grid. Neither may be empty.
-double estimate_volume_ratio(const TriangleMesh& mesh, std::span<const Sphere> spheres);
+// None where no line meets the one or the other: small things far apart, a mesh without volume.
+std::optional<double> estimate_volume_ratio(const TriangleMesh& mesh,
+                                            std::span<const Sphere> spheres);
 
 struct EstimatedVolume {
   double volume = 0.0;

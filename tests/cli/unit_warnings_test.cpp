@@ -29,6 +29,32 @@ TEST_F(UnitWarnings, NamesTheUnitOfAnErrorThatIsTooLarge) {
   EXPECT_EQ(fit({"--max-error", "0.02"}).err, "");
 }
 
+// Two grains, so that the small error takes few spheres.
+TEST_F(UnitWarnings, NamesTheUnitOfAnErrorThatIsTooSmall) {
+  write("part.off",
+        "OFF\n8 8 0\n0 0 0\n.1 0 0\n0 .1 0\n0 0 .1\n300 0 0\n300.1 0 0\n300 .1 0\n300 0 .1\n"
+        "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 6 5\n3 4 5 7\n3 4 7 6\n3 5 6 7\n");
+  const auto expect_warning = [this](const std::vector<std::string>& more,
+                                     const std::string& ending) {
+    std::vector<std::string> line = {"fit", "part.off", "-o", "part.json", "--effort", "0"};
+    line.insert(line.end(), more.begin(), more.end());
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find(" is less than a thousandth of the part, whose largest extent is "
+                               "300.1, which may take very many spheres and hours" +
+                               ending),
+              std::string::npos)
+        << outcome.err;
+  };
+  expect_warning({"--max-error", "0.25"}, "\n");
+  expect_warning({"--max-error", "0.025"},
+                 ": if that is in millimetres and the error was meant in metres, use --max-error "
+                 "25, or for --scale 0.001\n");
+  expect_warning({"--max-error", "0.025", "--units", "mm"},
+                 ": both are in millimetres (as --units says); if the error was meant in metres, "
+                 "use --max-error 0.025m\n");
+}
+
 TEST_F(UnitWarnings, ADiameterFarBelowTheError) {
   write_box("part.stl", {2, 1, 1});
   const Outcome outcome = fit({"--max-error", "2", "--min-external", "0.19"});

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace spherule::test {
@@ -17,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kSphere = 4.0 / 3.0 * std::numbers::pi;
 
 double ratio(const TriangleMesh& mesh, const std::vector<Sphere>& spheres) {
-  return internal::estimate_volume_ratio(mesh, spheres);
+  return internal::estimate_volume_ratio(mesh, spheres).value();
 }
 
 TEST(VolumeRatio, WhatSeveralSpheresHoldCountsOnce) {
@@ -52,6 +53,21 @@ TEST(VolumeRatio, ThinPlatesAndPipesInAnyDirection) {
   }
   const double ring = 60.0 * std::sin(2.0 * std::numbers::pi / 60.0) / 2.0 * (1.0 - 0.9 * 0.9);
   EXPECT_NEAR(kSphere / ratio(pipe(1.0, 0.9, 10.0, 60), sphere), 10.0 * ring, 0.02 * 10.0 * ring);
+}
+
+// Two grains 100 apart, between which the lines pass, and a sheet of two faces.
+TEST(VolumeRatio, IsAbsentWhereNothingIsMet) {
+  const TriangleMesh grain = box_mesh(Vector3d::Zero(), Vector3d::Constant(0.001));
+  const TriangleMesh grains =
+      joined(grain, box_mesh(Vector3d(100.0, 0.0, 0.0), Vector3d(100.001, 0.001, 0.001)));
+  const std::vector<Sphere> around{{Vector3d(50.0, 0.0, 0.0), 51.0}};
+  EXPECT_EQ(internal::estimate_volume_ratio(grains, around), std::nullopt);
+  const std::vector<Sphere> far_apart{{Vector3d::Zero(), 0.001},
+                                      {Vector3d::Constant(100.0), 0.001}};
+  EXPECT_EQ(internal::estimate_volume_ratio(cube_mesh(), far_apart), std::nullopt);
+  const TriangleMesh sheet{.vertices = {Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY()},
+                           .triangles = {{0, 1, 2}, {0, 2, 1}}};
+  EXPECT_EQ(internal::estimate_volume_ratio(sheet, around), std::nullopt);
 }
 
 // Without external spheres S is the box.
