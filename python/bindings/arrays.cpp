@@ -21,14 +21,15 @@ py::array as_array(py::handle value, const char* name) {
   return array;
 }
 
-void require_kind(const py::array& array, std::string_view kinds, const char* name) {
+// Of the `kinds` of NumPy's types, which `wanted` describes.
+void require_kind(const py::array& array, std::string_view kinds, const char* wanted,
+                  const char* name) {
   const py::dtype type = array.dtype();
   const bool is_empty = array.size() == 0;
   if (kinds.find(type.kind()) == kinds.npos || (type.kind() == 'f' && type.itemsize() > 8)) {
     if (is_empty) return;
     throw py::type_error(std::string(name) + ": the type of its numbers is " +
-                         std::string(py::str(py::object(type))) +
-                         ", not float64 or one that it holds");
+                         std::string(py::str(py::object(type))) + ", not " + wanted);
   }
 }
 
@@ -40,7 +41,7 @@ void require_kind(const py::array& array, std::string_view kinds, const char* na
 using WholeNumbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 WholeNumbers whole_numbers(const py::array& array, const char* name) {
-  require_kind(array, "iu", name);
+  require_kind(array, "iu", "that of whole numbers", name);
   auto all = WholeNumbers::ensure(array);
   if (!all) throw py::error_already_set();
   return all;
@@ -83,7 +84,7 @@ std::string shape_text(const py::array& array) {
 Numbers numbers(py::handle value, const char* name) {
   py::array array = as_array(value, name);
   if (!is_plain(array)) {
-    require_kind(array, "fiu", name);
+    require_kind(array, "fiu", "float64 or one that it holds", name);
     array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
     if (!array) throw py::error_already_set();
   }
