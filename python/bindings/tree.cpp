@@ -19,6 +19,15 @@ namespace {
 
 using TreePointer = std::shared_ptr<SphereTree>;
 
+py::array spheres_of(const py::object& centers_in, const py::object& radii_in) {
+  const std::vector<Eigen::Vector3d> centers = points(centers_in, "centers");
+  const Numbers radii = row(radii_in, centers.size(), "radii");
+  std::vector<Sphere> all;
+  all.reserve(centers.size());
+  for (const Eigen::Vector3d& center : centers) all.push_back({center, radii.data[all.size()]});
+  return array_of(std::move(all));
+}
+
 TreePointer built(const py::object& spheres_in, int branching) {
   return run_long(py::none(),
                   [all = spheres(spheres_in, "spheres").copy(), branching](const LongRun&) {
@@ -145,6 +154,11 @@ py::tuple level_tree_of(const py::object& spheres_in, const py::sequence& levels
 
 void bind_tree(py::module_& module) {
   bind_tree_class(module);
+  module.def("spheres_of", &spheres_of, py::arg("centers"), py::arg("radii"),
+             Help("spheres_of(centers, radii)",
+                  "Spheres as this package takes them, shape (n, 4), of centres (n, 3) and radii "
+                  "(n,).")
+                 .c_str());
   module.def(
       "build_tree", &built, py::arg("spheres"), py::kw_only(), py::arg("branching") = 8,
       Help("build_tree(spheres, *, branching=8)",

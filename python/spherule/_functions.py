@@ -3,18 +3,14 @@
 
 from typing import Sequence
 
-import numpy as np
-
 from . import _core
-from ._arguments import Array, MeshLike, Progress
-from ._record import Floats
+from ._arguments import MeshLike, Progress
 from ._results import Simplification
 from ._shapes import Zone
 
 __all__ = [
     "simplify",
     "sphere_tree",
-    "spheres_of",
 ]
 
 
@@ -66,9 +62,3 @@ def sphere_tree(simplification: Simplification) -> _core.SphereTree:
     if not simplification.levels:
         return _core.build_tree(simplification.spheres)
     return _core.build_tree_from_levels(simplification.spheres, simplification.levels)[0]
-
-
-def spheres_of(centers: Array, radii: Array) -> Floats:
-    """Spheres as this package takes them, shape (n, 4), of centres (n, 3) and radii (n,)."""
-    result: Floats = np.column_stack([np.asarray(centers, dtype=float), np.asarray(radii, dtype=float)])
-    return result

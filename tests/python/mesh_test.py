@@ -121,6 +121,7 @@ def test_stage_1_alone(cube, fit):
 def test_spheres_of_centres_and_radii():
     spheres = spherule.spheres_of([[1, 2, 3]], [4])
     assert spheres.tolist() == [[1, 2, 3, 4]]
+    assert spherule.spheres_of([], []).shape == (0, 4)
 
 
 def test_points_become_spheres():
