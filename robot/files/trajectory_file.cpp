@@ -8,9 +8,11 @@
 #include "spheretree/text/text.h"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace spherule {
 namespace {
@@ -54,16 +56,16 @@ class Reader {
 
   static bool is_header(const std::vector<std::string_view>& words) {
     return std::any_of(words.begin(), words.end(), [](std::string_view word) {
-      return !word.empty() && !internal::finite_number(word) && !is_no_finite_number(word);
+      return !word.empty() && !has_form_of_number(word);
     });
   }
-  // "nan" in the first line is a faulty configuration, not a joint of that name.
-  static bool is_no_finite_number(std::string_view word) {
-    std::string lower(word);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    if (lower.starts_with('-') || lower.starts_with('+')) lower.erase(0, 1);
-    return lower == "nan" || lower == "inf" || lower == "infinity";
+  // "nan" or "1e400" in the first line is a faulty configuration, not a joint of that name.
+  static bool has_form_of_number(std::string_view word) {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const char* const end = word.data() + word.size();
+    double value = 0.0;
+    const auto [stop, fault] = std::from_chars(word.data(), end, value);
+    return stop == end && fault != std::errc::invalid_argument;
   }
 
   std::string name_of_variable(std::size_t variable) const {

@@ -114,6 +114,11 @@ TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_TRUE(fault("1 2\n1 ,5 2\n").starts_with("line 2: has commas beside other separators"));
   EXPECT_EQ(fault("1,nan\n"), "line 1: 'nan' is not a finite number");
   EXPECT_EQ(fault("1,-inf\n"), "line 1: '-inf' is not a finite number");
+  EXPECT_EQ(fault("1e400,2\n"), "line 1: '1e400' is not a finite number");
+  EXPECT_EQ(fault("# path\n1,-1E+400\n"), "line 2: '-1E+400' is not a finite number");
+  EXPECT_EQ(fault("+Infinity,2\n"), "line 1: '+Infinity' is not a finite number");
+  EXPECT_EQ(fault("+-1,2\n"), "line 1: '+-1' is not a finite number");
+  EXPECT_EQ(fault("1e400,c\n"), "line 1: the robot has no joint '1e400'");
   EXPECT_EQ(fault("1,2\n1e999,2\n"), "line 2: '1e999' is not a finite number");
   EXPECT_EQ(fault("a,d\n"), "line 1: the robot has no joint 'd'");
   EXPECT_EQ(fault("a,b,c\n"), "line 1: joint 'b' mimics another; leave it out");
