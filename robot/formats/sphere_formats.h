@@ -147,7 +147,8 @@ struct SphereFileContext {
 //   place.
 // - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the spheres is kept, byte by byte
 //   (but YAML in which a changed part stands in a line with others, or in an anchor, is written
-//   anew, without comments). Pairs of `spheres` that it does not list yet, in either order, are
+//   anew, without comments). In YAML so are the spheres of links that `spheres` does not name, and
+//   those that are switched off. Pairs of `spheres` that it does not list yet, in either order, are
 //   added: with their reason, in YAML as a comment; to cuRobo's files that have `kinematics`, to
 //   XRDF that has `self_collision`, and to an SRDF that does not enable them. Buffers go into a new
 //   file only.

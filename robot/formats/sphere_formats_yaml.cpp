@@ -82,7 +82,7 @@ void switch_off_unlisted(const YamlMembers& kinematics, SphereGatherer& gathered
   }
   for (LinkSpheres& link : gathered.spheres.links) {
     if (names.contains(link.link)) continue;
-    gathered.spheres.switched_off += link.spheres.size();
+    for (const Sphere& sphere : link.spheres) gathered.leave_out(link.link, sphere);
     link.spheres.clear();
   }
 }
@@ -110,6 +110,7 @@ void read_curobo(const YamlMembers& root, const fs::path& path, SphereGatherer& 
     if (!found) beside.refuse({}, "has no \"collision_spheres\"");
     read_spheres(*found, beside);
     gathered.spheres = std::move(beside.spheres);
+    gathered.left_out = std::move(beside.left_out);
   } else {
     read_spheres(*spheres, gathered);
   }
@@ -158,8 +159,8 @@ void read_xrdf(const YamlMembers& root, SphereGatherer& gathered) {
 
 }  // namespace
 
-SphereFormatFile read_sphere_yaml(std::string_view text, const fs::path& path) {
-  SphereGatherer gathered(path.string(), text.size());
+SphereFormat gather_sphere_yaml(std::string_view text, const fs::path& path,
+                                SphereGatherer& gathered) {
   const YamlMembers root = yaml_members(yaml_document(text, gathered), "the file", gathered);
   const auto format = find_member(root, "format");
   const bool xrdf = format && format->IsScalar() && format->Scalar() == "xrdf";
@@ -168,7 +169,13 @@ SphereFormatFile read_sphere_yaml(std::string_view text, const fs::path& path) {
   } else {
     read_curobo(root, path, gathered);
   }
-  return {xrdf ? SphereFormat::kXrdf : SphereFormat::kCurobo, std::move(gathered.spheres)};
+  return xrdf ? SphereFormat::kXrdf : SphereFormat::kCurobo;
+}
+
+SphereFormatFile read_sphere_yaml(std::string_view text, const fs::path& path) {
+  SphereGatherer gathered(path.string(), text.size());
+  const SphereFormat format = gather_sphere_yaml(text, path, gathered);
+  return {format, std::move(gathered.spheres)};
 }
 
 }  // namespace spherule::internal

@@ -5,8 +5,10 @@
 #include "robot/formats/internal/yaml_edit.h"
 #include "robot/formats/internal/yaml_nodes.h"
 #include "robot/formats/internal/yaml_rewriter.h"
+#include "spheretree/error.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -88,12 +90,38 @@ Node parent_of(const Node& root, const Keys& keys) {
   return at;
 }
 
+// With what the file says of spheres beside these: what it switches off, but for spheres of links
+// that cuRobo is not told of and that get others, and all spheres of other links. What cannot be
+// read is replaced.
+RobotSpheres with_kept_spheres(RobotSpheres spheres, std::string_view text,
+                               const std::filesystem::path& path) {
+  SphereGatherer old(path.string(), text.size());
+  try {
+    gather_sphere_yaml(text, path, old);
+  } catch (const Error&) {
+    return spheres;
+  }
+  std::map<std::string, std::size_t> places;
+  for (const LinkSpheres& link : spheres.links) places.try_emplace(link.link, places.size());
+  for (LinkSpheres& link : old.spheres.links) {
+    const auto [place, is_other] = places.try_emplace(link.link, places.size());
+    if (is_other) spheres.links.push_back(std::move(link));
+    std::vector<Sphere>& all = spheres.links[place->second].spheres;
+    const bool has_spheres = !is_other && !all.empty();
+    for (const Sphere& sphere : old.left_out[place->first]) {
+      if (sphere.radius <= 0.0 || !has_spheres) all.push_back(sphere);
+    }
+  }
+  return spheres;
+}
+
 // Makes the changes twice, in the text and in what was read of it, which must then agree.
 class KeptYaml {
  public:
-  KeptYaml(std::string_view text, const RobotSpheres& spheres, const KeptPlaces& places,
-           const SphereGatherer& gathered)
+  KeptYaml(std::string_view text, const RobotSpheres& spheres, const RobotSpheres& with_kept,
+           const KeptPlaces& places, const SphereGatherer& gathered)
       : spheres_(spheres),
+        with_kept_(with_kept),
         places_(places),
         gathered_(gathered),
         document_(yaml_document(text, gathered)),
@@ -106,7 +134,7 @@ class KeptYaml {
     const auto place = place_at(document_, places_.spheres, gathered_);
     gathered_.unless(place.has_value(), {}, "has no place for spheres");
     const std::string block =
-        yaml_spheres(spheres_, static_cast<int>(edit_.column(place->key)) + 2);
+        yaml_spheres(with_kept_, static_cast<int>(edit_.column(place->key)) + 2);
     edit_.replace_by_block(*place, block);
     parent_of(expected_, places_.spheres)[places_.spheres.back()] = YAML::Load(block);
     add_names();
@@ -244,6 +272,7 @@ class KeptYaml {
   }
 
   const RobotSpheres& spheres_;
+  const RobotSpheres& with_kept_;
   const KeptPlaces& places_;
   const SphereGatherer& gathered_;
   Node document_;
@@ -257,17 +286,22 @@ class KeptYaml {
 
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format) {
+  // Columns of the first line are counted behind it.
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  const std::string mark(text.starts_with(kByteOrderMark) ? kByteOrderMark : "");
+  text.remove_prefix(mark.size());
   const SphereGatherer gathered(path.string(), text.size());
   const Node document = yaml_document(text, gathered);
   const KeptPlaces places =
       places_in(yaml_members(document, "the file", gathered), format, gathered);
-  if (auto changed = KeptYaml(text, spheres, places, gathered).changed()) {
-    return std::move(*changed);
-  }
-  const std::string anew = rewritten_yaml(document, spheres, places.spheres, gathered);
-  auto changed = KeptYaml(anew, spheres, places, gathered).changed();
-  gathered.unless(changed.has_value(), {}, "has a style in which it cannot be kept");
-  return std::move(*changed);
+  const RobotSpheres with_kept = with_kept_spheres(spheres, text, path);
+  const auto changed = [&](std::string_view old) {
+    return KeptYaml(old, spheres, with_kept, places, gathered).changed();
+  };
+  if (const auto result = changed(text)) return mark + *result;
+  const auto anew = changed(rewritten_yaml(document, with_kept, places.spheres, gathered));
+  gathered.unless(anew.has_value(), {}, "has a style in which it cannot be kept");
+  return mark + *anew;
 }
 
 }  // namespace spherule::internal

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -46,13 +47,16 @@ class SphereGatherer {
   void take(std::size_t count, const std::string& place) const;
   // Before the name of a link is kept.
   void take_name(const std::string& name, const std::string& place) const;
-  // Leaves out and counts a sphere that is switched off.
+  // Leaves out a sphere that is switched off.
   void add(const Eigen::Vector3d& center, double radius, const std::string& place);
+  // Leaves out and counts a sphere of a link.
+  void leave_out(const std::string& link, const Sphere& sphere);
   // Once for each two links, in whatever order.
   void ignore(const std::string& link_a, const std::string& link_b, const std::string& place);
 
   const std::string& file() const { return file_; }
   RobotSpheres spheres;
+  std::map<std::string, std::vector<Sphere>> left_out;  // by link
 
  private:
   std::string file_;
@@ -84,8 +88,12 @@ std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& 
 
 // YAML: cuRobo or XRDF.
 SphereFormatFile read_sphere_yaml(std::string_view text, const std::filesystem::path& path);
-// A file with other spheres, and with the pairs that it does not ignore yet: all other bytes as
-// they are or, where its style does not allow that, written anew without its comments.
+SphereFormat gather_sphere_yaml(std::string_view text, const std::filesystem::path& path,
+                                SphereGatherer& gathered);
+// A file with other spheres of these links, and with the pairs that it does not ignore yet: all
+// other bytes as they are or, where its style does not allow that, written anew without its
+// comments. What it switches off stays, and so do the spheres of other links; those of a file
+// beside come into this one.
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format);
 // A new file.

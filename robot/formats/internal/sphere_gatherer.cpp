@@ -23,13 +23,18 @@ void SphereGatherer::begin_link(const std::string& name, const std::string& plac
 void SphereGatherer::add(const Eigen::Vector3d& center, double radius, const std::string& place) {
   unless(left_ > 0, place, "aliases make more spheres than the file has characters");
   --left_;
+  const Sphere sphere{center, radius};
   if (radius <= 0.0) {
-    ++spheres.switched_off;
+    leave_out(spheres.links.back().link, sphere);
     return;
   }
-  const Sphere sphere{center, radius};
   unless(is_usable(sphere), place, "a number is beyond 1e15");
   spheres.links.back().spheres.push_back(sphere);
+}
+
+void SphereGatherer::leave_out(const std::string& link, const Sphere& sphere) {
+  ++spheres.switched_off;
+  left_out[link].push_back(sphere);
 }
 
 void SphereGatherer::take(std::size_t count, const std::string& place) const {

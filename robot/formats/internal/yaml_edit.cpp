@@ -19,6 +19,11 @@ bool is_comment(std::string_view text) {
   return start == std::string_view::npos || text[start] == '#';
 }
 
+// Whether a line ends the document, which no value goes beyond.
+bool ends_document(std::string_view line) {
+  return line.starts_with("...") && is_comment(line.substr(3));
+}
+
 // How long the word is with which a text says that there is no value; 0 if it says nothing.
 std::size_t length_of_null(std::string_view text) {
   for (const std::string_view word : {"null", "Null", "NULL", "~"}) {
@@ -111,12 +116,14 @@ std::size_t YamlEdit::column(const Node& key) {
   return at - start;
 }
 
-// Comments and empty lines below the value belong to what follows.
+// Comments and empty lines below the value, and the end of the document, belong to what follows.
 std::size_t YamlEdit::line_after_value(const YamlPlace& place) const {
   const auto first = static_cast<std::size_t>(place.key.Mark().line);
   std::size_t after =
       place.next ? static_cast<std::size_t>(place.next->Mark().line) : lines_.size();
-  while (after > first + 1 && is_comment(line(after - 1))) --after;
+  while (after > first + 1 && (is_comment(line(after - 1)) || ends_document(line(after - 1)))) {
+    --after;
+  }
   return after;
 }
 

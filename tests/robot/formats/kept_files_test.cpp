@@ -291,6 +291,70 @@ TEST_F(KeptFiles, SrdfThatIsNotWellFormedIsRefused) {
   }
 }
 
+// What is attached has places in the file that are switched off, and other links spheres of their
+// own. A link that cuRobo was not told of has its spheres replaced where it gets some.
+TEST_F(KeptFiles, SpheresThatAreSwitchedOffOrOfOtherLinksStay) {
+  const std::string names = "kinematics:\n    collision_link_names: [base, hand, held]\n";
+  const std::string old =
+      "      base:\n      - {center: [9, 9, 9], radius: 9}\n"
+      "      - {center: [0, 0, 1], radius: -10}\n"
+      "      held:\n      - {center: [0, 0, 2], radius: -10}\n"
+      "      - {center: [0, 0, 3], radius: 0.5}\n"
+      "      arm: [{center: [7, 7, 7], radius: 7}, {center: [0, 0, 4], radius: 0}]\n"
+      "      hand:\n      - {center: [0, 0, 5], radius: -0.01}\n"
+      "      camera: [{center: [0, 0, 6], radius: 6}]\n";
+  const std::string expected =
+      "      base:\n        - {center: [0.0, 0.0, 0.0], radius: 0.5}\n"
+      "        - {center: [0.0, 0.0, 1.0], radius: -10.0}\n"
+      "      arm:\n        - {center: [1.0, 2.0, 3.0], radius: 0.25}\n"
+      "        - {center: [0.0, 0.0, 4.0], radius: 0.0}\n"
+      "      hand:\n        - {center: [0.0, 0.0, 5.0], radius: -0.01}\n"
+      "      held:\n        - {center: [0.0, 0.0, 3.0], radius: 0.5}\n"
+      "        - {center: [0.0, 0.0, 2.0], radius: -10.0}\n"
+      "      camera:\n        - {center: [0.0, 0.0, 6.0], radius: 6.0}\n";
+  const auto write = [&](const std::string& text) {
+    write_robot_spheres(spheres_, SphereFormat::kCurobo,
+                        {.original = folder_.write("original", text)}, folder_.path() / "kept");
+    return read_file(folder_.path() / "kept");
+  };
+  spheres_.self_collision_ignore.clear();
+  const std::string place = "    collision_spheres:\n";
+  const std::string text = replaced(names, "held]", "held, arm]") + place + expected;
+  EXPECT_EQ(write(names + place + old), text);
+  EXPECT_EQ(write(text), text) << "the second time";
+  folder_.write("spheres.yml", "collision_spheres:\n" + old);
+  EXPECT_EQ(write(names + "    collision_spheres: spheres.yml\n"), text) << "in a file beside";
+  EXPECT_EQ(write("collision_spheres:\n  old: [{center: [0, 0, x], radius: 1}]\n"),
+            write("collision_spheres:\n  base: []\n"))
+      << "what cannot be read is replaced";
+  const std::string xrdf =
+      "format: xrdf\nformat_version: 1.0\ncollision:\n  geometry: auto\n"
+      "geometry:\n  auto:\n    spheres:\n";
+  const std::string held = "      held:\n        - {center: [0.0, 0.0, 2.0], radius: -10.0}\n";
+  write_robot_spheres(spheres_, SphereFormat::kXrdf,
+                      {.original = folder_.write("original", xrdf + held)},
+                      folder_.path() / "kept");
+  EXPECT_EQ(read_file(folder_.path() / "kept"), xrdf + kSpheres + held);
+}
+
+TEST_F(KeptFiles, AByteOrderMarkAndTheEndOfTheDocumentStay) {
+  spheres_.self_collision_ignore.clear();
+  const std::string mark = "\xef\xbb\xbf";
+  spheres_.links.pop_back();
+  const std::string expected = mark + "collision_spheres:  # mine\n" +
+                               "  base:\n    - {center: [0.0, 0.0, 0.0], radius: 0.5}\n"
+                               "  arm:\n    - {center: [1.0, 2.0, 3.0], radius: 0.25}\n" +
+                               "# below\n...\n# behind\n";
+  EXPECT_EQ(kept(SphereFormat::kCurobo,
+                 mark + "collision_spheres:  # mine\n  base: []\n# below\n...\n# behind\n"),
+            expected);
+  const std::string lists =
+      "kinematics:\n  collision_spheres: {}\n  self_collision_ignore:\n"
+      "    base: [x]\n# below\n...\n";
+  spheres_.self_collision_ignore = {{"arm", "tool", {}}};
+  EXPECT_TRUE(kept(SphereFormat::kCurobo, lists).ends_with("# below\n...\n"));
+}
+
 // Spheres are written where they are read.
 TEST_F(KeptFiles, CuroboWhoseConfigurationIsBesideItsSpheres) {
   spheres_.self_collision_ignore.clear();
