@@ -10,6 +10,9 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace spherule {
@@ -62,20 +65,29 @@ JointType type_of(const XmlElement& joint) {
   if (type == "prismatic") return JointType::kPrismatic;
   if (type == "continuous") return JointType::kContinuous;
   if (type == "planar" || type == "floating") {
-    joint.refuse("planar and floating joints cannot be modelled");
+    joint.refuse("planar and floating joints cannot be modelled; the type 'fixed' in place of '" +
+                 type + "' holds what hangs on it where its <origin> is");
   }
   joint.refuse("it has no known type but " + internal::in_quotes(type));
+}
+
+// Of Gazebo's models some have an axis with rpy="0 0 0", which turns it nowhere.
+Eigen::Vector3d axis_of(const XmlElement& joint) {
+  const auto axis = joint.child("axis");
+  if (!axis) return Eigen::Vector3d::UnitX();
+  if (axis->vector("rpy", Eigen::Vector3d::Zero()) == Eigen::Vector3d::Zero()) {
+    axis->require_attributes({"xyz", "rpy"});
+  } else {
+    axis->require_attributes({"xyz"});
+  }
+  return axis->needed_vector("xyz");
 }
 
 Joint joint_of(const XmlElement& element) {
   Joint joint{.name = element.needed("name"),
               .type = type_of(element),
-              .parent_from_joint = pose_of(element),
-              .axis = Eigen::Vector3d::UnitX()};
-  if (const auto axis = element.child("axis")) {
-    axis->require_attributes({"xyz"});
-    joint.axis = axis->needed_vector("xyz");
-  }
+              .parent_from_joint = pose_of(element)};
+  if (joint.type != JointType::kFixed) joint.axis = axis_of(element);
   const auto limit = element.child("limit");
   if (joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic) {
     if (!limit) element.refuse("it has no <limit>");
@@ -83,6 +95,24 @@ Joint joint_of(const XmlElement& element) {
     joint.upper = limit->number("upper", 0.0);
   }
   return joint;
+}
+
+// Spheres of radius zero stand for points of contact, boxes of size zero for links that have no
+// shape. What has no extent is widened, so that it is held by the shape that is read.
+constexpr double kLeastSize = 1e-6;
+
+double with_extent(double size) {
+  return size == 0.0 ? kLeastSize : size;
+}
+
+bool is_point(const LinkShape& shape) {
+  const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+  if (primitive == nullptr) return false;
+  if (const auto* const box = std::get_if<Box>(primitive)) {
+    return (box->size.array() == kLeastSize).all();
+  }
+  const auto* const sphere = std::get_if<SolidSphere>(primitive);
+  return sphere != nullptr && sphere->radius == kLeastSize;
 }
 
 class ShapeReader {
@@ -93,7 +123,8 @@ class ShapeReader {
   LinkDescription link_of(const XmlElement& link) {
     LinkDescription result{.name = link.needed("name")};
     for (const XmlElement& visual : link.children("visual")) {
-      result.visual.push_back(shape_of(visual, options_.require_visual_meshes));
+      LinkShape shape = shape_of(visual, options_.require_visual_meshes);
+      if (!is_point(shape)) result.visual.push_back(std::move(shape));
     }
     for (const XmlElement& collision : link.children("collision")) {
       result.collision.push_back(shape_of(collision, options_.require_collision_meshes));
@@ -104,7 +135,11 @@ class ShapeReader {
  private:
   LinkShape shape_of(const XmlElement& element, bool require_mesh) {
     const XmlElement geometry = element.needed_child("geometry");
-    const std::vector<XmlElement> solids = geometry.children();
+    // Drake marks meshes here (<drake:declare_convex/>), and materials stand here by mistake.
+    std::vector<XmlElement> solids = geometry.children();
+    std::erase_if(solids, [](const XmlElement& child) {
+      return child.tag().find(':') != std::string_view::npos || child.tag() == "material";
+    });
     if (solids.size() != 1) geometry.refuse("it has not one shape");
     LinkShape shape{element.attribute("name").value_or(""), pose_of(element), {}};
     if (solids.front().tag() == "mesh") {
@@ -119,13 +154,15 @@ class ShapeReader {
     Primitive primitive;
     if (solid.tag() == "box") {
       solid.require_attributes({"size"});
-      primitive = Box{solid.needed_vector("size")};
+      const Eigen::Vector3d size = solid.needed_vector("size");
+      primitive = Box{size.unaryExpr(&with_extent)};
     } else if (solid.tag() == "sphere") {
       solid.require_attributes({"radius"});
-      primitive = SolidSphere{solid.needed_number("radius")};
+      primitive = SolidSphere{with_extent(solid.needed_number("radius"))};
     } else if (solid.tag() == "cylinder") {
       solid.require_attributes({"radius", "length"});
-      primitive = Cylinder{solid.needed_number("radius"), solid.needed_number("length")};
+      primitive = Cylinder{with_extent(solid.needed_number("radius")),
+                           with_extent(solid.needed_number("length"))};
     } else {
       solid.refuse("it is none of the shapes that can be read: box, cylinder, mesh, sphere");
     }

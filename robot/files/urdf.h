@@ -51,13 +51,15 @@ struct UrdfOptions {
 // they must exist, as far as the options require it, and are not read. Where there is no file that
 // is called as what follows package://PACKAGE/ or file://, it is one that this escapes as URLs do
 // (%20). An axis that is not given is (1, 0, 0), and a limit 0. Of a fixed joint, axis, limits and
-// mimic mean nothing.
+// mimic mean nothing. A size of zero (a point of contact, a flat box) is read as 1e-6, so that what
+// is read holds the shape; visual boxes and spheres that are points are left out. In <geometry>,
+// <material> and elements with a prefix are not examined.
 //
 // Throws Error, whose subject is the file and whose reason names the line where there is one: for a
 // file that cannot be read, is no URDF, needs xacro (under another name), or is one for xacro where
 // that fails or is not found; a number that is malformed or not finite, and attributes beside those
 // that give a pose, an axis, a mimic or a shape; two origins or shapes where one belongs, other
-// shapes, and shapes without extent; planar and floating joints, a moving joint whose axis is zero
+// shapes, and negative sizes; planar and floating joints, a moving joint whose axis is zero
 // or whose limits are missing or reversed, mimics of what does not move or of themselves; names
 // that are not unique, a link below two joints or above itself, none or several roots; and missing
 // meshes and packages.

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 namespace spherule {
@@ -59,7 +60,9 @@ int RobotModel::insert(std::string name, std::string_view parent_link, Joint joi
     joint.upper = std::numbers::pi;
   }
   if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower > joint.upper) {
-    throw Error("joint " + joint.name, "the limits are not finite or reversed");
+    std::ostringstream limits;
+    limits << joint.lower << " and " << joint.upper;
+    throw Error("joint " + joint.name, "the limits are not finite or reversed: " + limits.str());
   }
   joint.parent_link = parent;
   joint.child_link = static_cast<int>(links_.size());
