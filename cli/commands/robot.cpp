@@ -222,7 +222,7 @@ void print_warnings(const RobotCover& cover, LinkWarnings& of_links,
                     const std::vector<PostureContact>& contacts) {
   for (const LinkCover& link : cover.links) of_links.print(link);
   for (const std::string& warning : wrong_pairs) warn(warning);
-  for (const PostureContact& contact : contacts) warn(describe(contact));
+  for (const std::string& warning : contact_warnings(contacts)) warn(warning);
 }
 
 // Fails (kNo), naming the links, if something promised of a link is not proved, or if the share of

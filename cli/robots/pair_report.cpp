@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <iomanip>
 #include <numbers>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -21,6 +24,34 @@ std::size_t count_of(const LinkPairs& pairs, PairVerdict verdict) {
   return static_cast<std::size_t>(
       std::count_if(pairs.pairs().begin(), pairs.pairs().end(),
                     [&](const LinkPair& pair) { return pair.verdict == verdict; }));
+}
+
+constexpr std::size_t kShownContacts = 5;
+
+std::string describe(const PostureContact& contact) {
+  std::ostringstream out;
+  out << "in " << contact.posture << " " << contact.first << " and " << contact.second << " touch";
+  if (contact.do_meshes_touch) {
+    out << ", by their meshes, too";
+    return out.str();
+  }
+  out << " by their spheres alone, " << std::fixed << std::setprecision(1)
+      << contact.overlap_depth * kMillimetresPerMetre << " mm deep: "
+      << (contact.is_proved_free ? "free for who takes the proofs (NAME.pairs), " : "")
+      << "a smaller E for either, or --false-alarms, would mend it";
+  return out.str();
+}
+
+std::vector<std::string> first_of(const std::vector<PostureContact>& contacts,
+                                  const std::string& kind) {
+  const std::size_t shown = std::min(contacts.size(), kShownContacts);
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < shown; ++i) lines.push_back(describe(contacts[i]));
+  if (contacts.size() > shown) {
+    lines.push_back("so do " + std::to_string(contacts.size() - shown) + " more pairs, " + kind +
+                    ": posture_contacts in NAME.report.json has them all");
+  }
+  return lines;
 }
 
 }  // namespace
@@ -120,18 +151,19 @@ std::string describe_posture(const RobotModel& robot, const std::vector<double>&
   return out.str();
 }
 
-std::string describe(const PostureContact& contact) {
-  std::ostringstream out;
-  out << "in " << contact.posture << " " << contact.first << " and " << contact.second << " touch";
-  if (contact.do_meshes_touch) {
-    out << ", by their meshes, too";
-    return out.str();
+std::vector<std::string> contact_warnings(const std::vector<PostureContact>& contacts) {
+  std::vector<PostureContact> of_meshes;
+  std::vector<PostureContact> of_spheres;
+  for (const PostureContact& contact : contacts) {
+    (contact.do_meshes_touch ? of_meshes : of_spheres).push_back(contact);
   }
-  out << " by their spheres alone, " << std::fixed << std::setprecision(1)
-      << contact.overlap_depth * kMillimetresPerMetre << " mm deep: "
-      << (contact.is_proved_free ? "free for who takes the proofs (NAME.pairs), " : "")
-      << "a smaller E for either, or --false-alarms, would mend it";
-  return out.str();
+  if (of_spheres.size() > kShownContacts) {
+    std::ranges::stable_sort(of_spheres, std::greater(), &PostureContact::overlap_depth);
+  }
+  std::vector<std::string> warnings = first_of(of_meshes, "by their meshes, too");
+  const std::vector<std::string> others = first_of(of_spheres, "by their spheres alone");
+  warnings.insert(warnings.end(), others.begin(), others.end());
+  return warnings;
 }
 
 }  // namespace spherule

@@ -41,7 +41,8 @@ Json posture_json(const RobotModel& robot, const std::vector<double>& configurat
 // A posture of a robot as a person reads it: joints by name, degrees and metres.
 std::string describe_posture(const RobotModel& robot, const std::vector<double>& configuration);
 
-// A contact in a posture of a name, as a warning.
-std::string describe(const PostureContact& contact);
+// What touches in postures, as warnings: first where the meshes do, then where the spheres alone
+// do. Of many of a kind the first, or the deepest, and how many more there are.
+std::vector<std::string> contact_warnings(const std::vector<PostureContact>& contacts);
 
 }  // namespace spherule

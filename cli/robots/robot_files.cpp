@@ -12,8 +12,12 @@
 #include <climits>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <set>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -28,6 +32,14 @@ std::string checked_name(const std::string& name, const fs::path& urdf) {
                 "the name " + internal::in_quotes(name) + " cannot be part of that of a file");
   }
   return name;
+}
+
+// Some published robots have links as r2/waist.
+std::string part_of_file_name(std::string link) {
+  for (std::size_t at = link.find('/'); at != std::string::npos; at = link.find('/', at)) {
+    link.replace(at, 1, "%2F");
+  }
+  return link;
 }
 
 // Down from the root as long as only one way leads on: only one that has joints that move or, past
@@ -116,7 +128,8 @@ fs::path RobotFilePlan::pairs(const RobotDescription& robot) const {
 }
 
 fs::path RobotFilePlan::tree(const RobotDescription& robot, const std::string& link) const {
-  return folder / (checked_name(robot.name, urdf) + "." + checked_name(link, urdf) + ".tree");
+  return folder / (checked_name(robot.name, urdf) + "." +
+                   checked_name(part_of_file_name(link), urdf) + ".tree");
 }
 
 std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
@@ -132,7 +145,9 @@ std::vector<fs::path> RobotFilePlan::all(const RobotDescription& robot,
     }
   }
   files.push_back(report(robot));
+  std::set<fs::path> different;
   for (const fs::path& file : files) {
+    if (!different.insert(file).second) throw Error(file.string(), "is a file of two links");
     if (file.filename().string().size() > NAME_MAX) {
       throw Error(file.string(), "cannot be written: the name is too long");
     }

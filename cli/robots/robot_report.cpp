@@ -98,6 +98,7 @@ void write_row(std::ostream& out, const std::string& name, double max_error, con
 }
 
 constexpr double kLitresPerCubicMetre = 1e3;
+constexpr double kLargestRatio = 1e4;
 
 // D of the links, and how much wider a way may be and still be filled.
 std::string describe_filling(const RobotCover& cover) {
@@ -175,7 +176,9 @@ std::string robot_table(const RobotCover& cover, double seconds) {
     }
     write_row(out, padded(one_line(link.link)), link.fit->options.max_error, Totals({&link, 1}));
     const std::optional<double>& volume = link.fit->certificate.volume_ratio;
-    if (volume) {
+    if (volume && *volume > kLargestRatio) {  // next to none in the mesh
+      out << std::setw(8) << "> 1e4";
+    } else if (volume) {
       out << Cell(*volume, 8, 2);
     } else {  // an open mesh has none
       out << std::setw(8) << "-";

@@ -4,6 +4,8 @@
 #include "tests/cli/view_scene.h"
 #include "tests/support/effort.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -290,6 +292,54 @@ TEST_F(RobotPairsTest, DisabledPairsThatTouchAreAWarning) {
   EXPECT_NE(read("out/gantry.xrdf").find("# given, though they can touch: tool\n"),
             std::string::npos);
   EXPECT_EQ(warnings(R"( reason="User")"), "");
+}
+
+// A fan of 12 plates side by side on joints, whose spheres overlap though they are 1 mm apart; two
+// of the links have a slash in the name, as those of some published robots do.
+std::string fan() {
+  std::string text = "<robot name='fan'><link name='r/hub'/>";
+  for (int i = 0; i < 12; ++i) {
+    const std::string n = std::to_string(i);
+    const std::string link = (i < 2 ? "r/" : "") + n;
+    text += "<link name='" + link + "'><collision><geometry><box size='0.2 0.2 " +
+            (i == 0 ? "0" : "0.019") + "'/></geometry></collision></link><joint name='j" + n +
+            "' type='continuous'><parent link='r/hub'/><child link='" + link +
+            "'/><origin xyz='0 0 " + std::to_string(0.02 * i) + "'/></joint>";
+  }
+  return text + "</robot>";
+}
+
+TEST_F(RobotPairsTest, ManyContactsAtRestAreAFewWarnings) {
+  write("fan.urdf", fan());
+  const Outcome result = run({"robot", "fan.urdf", "-o", "out", "--effort", "0", "--max-error",
+                              "0.05", "--postures", "10", "--proofs", "none"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::size_t contacts = read_json("out/fan.report.json")["posture_contacts"].size();
+  ASSERT_GT(contacts, 10U);
+  const auto lines = std::count(result.err.begin(), result.err.end(), '\n');
+  EXPECT_EQ(lines, 6) << result.err;
+  EXPECT_NE(result.err.find("so do " + std::to_string(contacts - 5) + " more pairs"),
+            std::string::npos)
+      << result.err;
+  // The plate without thickness has next to no volume, and a row as wide as others.
+  const std::size_t row = result.out.find("\nr/0 ");
+  ASSERT_NE(row, std::string::npos) << result.out;
+  EXPECT_LT(result.out.find('\n', row + 1) - row, 110U) << result.out;
+  EXPECT_TRUE(exists("out/fan.r%2F0.tree"));
+  EXPECT_TRUE(exists("out/fan.2.tree"));
+}
+
+TEST_F(RobotPairsTest, LinksWhoseTreesWouldBeOneFileAreRefused) {
+  std::string text = fan();
+  const std::string name = "'2'";
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
+    text.replace(at, name.size(), "'r%2F1'");
+  }
+  write("fan.urdf", text);
+  const Outcome result = run({"robot", "fan.urdf", "-o", "out", "--format", "tree"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("fan.r%2F1.tree: is a file of two links"), std::string::npos)
+      << result.err;
 }
 
 }  // namespace
