@@ -42,6 +42,16 @@ void expect_spheres(const std::vector<LinkSpheres>& links) {
   if (!fault.empty()) throw std::logic_error("other spheres were written: " + fault);
 }
 
+// Spheres of other links stay in YAML and in a URDF.
+std::vector<LinkSpheres> of_links_to_keep(std::vector<LinkSpheres> links) {
+  std::erase_if(links, [](const LinkSpheres& link) {
+    return std::ranges::none_of(spheres_to_keep().links, [&](const LinkSpheres& written) {
+      return written.link == link.link;
+    });
+  });
+  return links;
+}
+
 // What is read of a file that was written; a refusal is no answer here.
 template <class Read>
 auto read_again(Read read) {
@@ -121,7 +131,7 @@ void write_into_yaml(const fs::path& file) {
     if (!before || before->format != format) continue;
     const SphereFormatFile after = read_again([&] { return read_robot_spheres(*kept); });
     if (after.format != format) throw std::logic_error("another format was written");
-    expect_spheres(after.spheres.links);
+    expect_spheres(of_links_to_keep(after.spheres.links));
   }
   if (!is_written) throw Error(file.string(), "takes no spheres");
 }
@@ -150,14 +160,8 @@ void write_into_urdf(const fs::path& file) {
   const fs::path kept = file.parent_path() / "kept";
   write_robot_spheres(spheres_to_keep(), SphereFormat::kUrdf, {.urdf = file}, kept);
   if (!before || !spheres_before) return;
-  std::vector<LinkSpheres> after =
-      read_again([&] { return read_robot_spheres(kept); }).spheres.links;
-  std::erase_if(after, [](const LinkSpheres& link) {
-    return std::ranges::none_of(spheres_to_keep().links, [&](const LinkSpheres& written) {
-      return written.link == link.link;
-    });
-  });
-  expect_spheres(after);
+  expect_spheres(
+      of_links_to_keep(read_again([&] { return read_robot_spheres(kept); }).spheres.links));
   read_again([&] { return read_urdf(kept, any_mesh); });
 }
 
