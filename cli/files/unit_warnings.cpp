@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/unit_warnings.h"
 
+#include <array>
 #include <optional>
+#include <span>
 #include <sstream>
 
 namespace spherule {
@@ -21,30 +23,38 @@ struct UnitPair {
   double factor() const { return meant->micrometres / mesh->micrometres; }
 };
 
-// The first with which the error would be one that people choose, of a part of this extent: of an
-// error in millimetres that is too large, or of one in metres that is too small. The unit of the
-// mesh may be known.
-std::optional<UnitPair> likely_units(double error, double extent, const LengthUnit* known) {
-  const bool is_large = error > kLargestError * extent;
-  const std::vector<UnitPair> candidates =
-      is_large ? std::vector<UnitPair>{{unit_named("mm"), unit_named("m")},
-                                       {unit_named("mm"), unit_named("inch")},
-                                       {unit_named("mm"), unit_named("cm")}}
-               : std::vector<UnitPair>{{unit_named("m"), unit_named("mm")}};
-  for (const UnitPair& pair : candidates) {
+// The symbols of units that an error may have been meant in where it is too large or too small, and
+// of those that the mesh may be in, the likeliest first.
+struct UnitMixup {
+  const char* meant;
+  std::span<const char* const> meshes;
+};
+constexpr std::array kCoarseUnits = {"m", "inch", "cm"};
+constexpr std::array kFineUnits = {"mm"};
+constexpr UnitMixup kTooLarge{"mm", kCoarseUnits};
+constexpr UnitMixup kTooSmall{"m", kFineUnits};
+
+// The first with which the error would be one that people choose, of a part of this extent. The
+// unit of the mesh may be known.
+std::optional<UnitPair> likely_units(const UnitMixup& mixup, double error, double extent,
+                                     const LengthUnit* known) {
+  for (const char* symbol : mixup.meshes) {
+    const UnitPair pair{unit_named(mixup.meant), unit_named(symbol)};
     if (known != nullptr && known != pair.mesh) continue;
     const double converted = error * pair.factor();
-    if (converted <= kLargestError * extent && converted >= kSmallestLikelyError * extent)
+    if (converted <= kLargestError * extent && converted >= kSmallestLikelyError * extent) {
       return pair;
+    }
   }
   return std::nullopt;
 }
 
 // What to do about an error in a unit that the mesh is not in; empty where none is likely.
-std::string unit_advice(double error, double extent, const ModelUnit& unit) {
+std::string unit_advice(const UnitMixup& mixup, double error, double extent,
+                        const ModelUnit& unit) {
   const LengthUnit* const known = unit.micrometres ? unit_of_size(*unit.micrometres) : nullptr;
   if (unit.micrometres && known == nullptr) return "";
-  const std::optional<UnitPair> units = likely_units(error, extent, known);
+  const std::optional<UnitPair> units = likely_units(mixup, error, extent, known);
   if (!units) return "";
   std::ostringstream text;
   if (known != nullptr) {
@@ -70,13 +80,14 @@ std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyO
     std::ostringstream text;
     text << "the max error " << error
          << " is more than a tenth of the part, whose largest extent is " << extent
-         << unit_advice(error, extent, unit);
+         << unit_advice(kTooLarge, error, extent, unit);
     warnings.push_back(text.str());
   } else if (error > 0.0 && error < kSmallestError * extent) {
     std::ostringstream text;
     text << "the max error " << error
          << " is less than a thousandth of the part, whose largest extent is " << extent
-         << ", which may take very many spheres and hours" << unit_advice(error, extent, unit);
+         << ", which may take very many spheres and hours"
+         << unit_advice(kTooSmall, error, extent, unit);
     warnings.push_back(text.str());
   }
   const double diameter = options.min_external_diameter;

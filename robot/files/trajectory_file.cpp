@@ -8,11 +8,9 @@
 #include "spheretree/text/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 namespace spherule {
 namespace {
@@ -54,18 +52,11 @@ class Reader {
     throw Error(file_, "line " + std::to_string(line_) + ": " + reason);
   }
 
+  // "nan" or "1e400" in the first line is a faulty configuration, not a joint of that name.
   static bool is_header(const std::vector<std::string_view>& words) {
     return std::any_of(words.begin(), words.end(), [](std::string_view word) {
-      return !word.empty() && !has_form_of_number(word);
+      return !word.empty() && !internal::has_form_of_number(word);
     });
-  }
-  // "nan" or "1e400" in the first line is a faulty configuration, not a joint of that name.
-  static bool has_form_of_number(std::string_view word) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const char* const end = word.data() + word.size();
-    double value = 0.0;
-    const auto [stop, fault] = std::from_chars(word.data(), end, value);
-    return stop == end && fault != std::errc::invalid_argument;
   }
 
   std::string name_of_variable(std::size_t variable) const {

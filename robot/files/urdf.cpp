@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace spherule {
@@ -105,14 +104,21 @@ double with_extent(double size) {
   return size == 0.0 ? kLeastSize : size;
 }
 
-bool is_point(const LinkShape& shape) {
-  const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
-  if (primitive == nullptr) return false;
-  if (const auto* const box = std::get_if<Box>(primitive)) {
-    return (box->size.array() == kLeastSize).all();
-  }
-  const auto* const sphere = std::get_if<SolidSphere>(primitive);
-  return sphere != nullptr && sphere->radius == kLeastSize;
+bool is_point(const XmlElement& solid) {
+  if (solid.tag() == "box") return solid.needed_vector("size") == Eigen::Vector3d::Zero();
+  return solid.tag() == "sphere" && solid.needed_number("radius") == 0.0;
+}
+
+// The only shape of a visual or collision element. Drake marks meshes beside it
+// (<drake:declare_convex/>), and materials stand there by mistake.
+XmlElement solid_of(const XmlElement& element) {
+  const XmlElement geometry = element.needed_child("geometry");
+  std::vector<XmlElement> solids = geometry.children();
+  std::erase_if(solids, [](const XmlElement& child) {
+    return child.tag().find(':') != std::string_view::npos || child.tag() == "material";
+  });
+  if (solids.size() != 1) geometry.refuse("it has not one shape");
+  return solids.front();
 }
 
 class ShapeReader {
@@ -124,7 +130,7 @@ class ShapeReader {
     LinkDescription result{.name = link.needed("name")};
     for (const XmlElement& visual : link.children("visual")) {
       LinkShape shape = shape_of(visual, options_.require_visual_meshes);
-      if (!is_point(shape)) result.visual.push_back(std::move(shape));
+      if (!is_point(solid_of(visual))) result.visual.push_back(std::move(shape));
     }
     for (const XmlElement& collision : link.children("collision")) {
       result.collision.push_back(shape_of(collision, options_.require_collision_meshes));
@@ -134,18 +140,12 @@ class ShapeReader {
 
  private:
   LinkShape shape_of(const XmlElement& element, bool require_mesh) {
-    const XmlElement geometry = element.needed_child("geometry");
-    // Drake marks meshes here (<drake:declare_convex/>), and materials stand here by mistake.
-    std::vector<XmlElement> solids = geometry.children();
-    std::erase_if(solids, [](const XmlElement& child) {
-      return child.tag().find(':') != std::string_view::npos || child.tag() == "material";
-    });
-    if (solids.size() != 1) geometry.refuse("it has not one shape");
+    const XmlElement solid = solid_of(element);
     LinkShape shape{element.attribute("name").value_or(""), pose_of(element), {}};
-    if (solids.front().tag() == "mesh") {
-      shape.geometry = mesh_of(solids.front(), require_mesh);
+    if (solid.tag() == "mesh") {
+      shape.geometry = mesh_of(solid, require_mesh);
     } else {
-      shape.geometry = primitive_of(solids.front());
+      shape.geometry = primitive_of(solid);
     }
     return shape;
   }

@@ -170,8 +170,7 @@ std::string sphere_file_name(std::string_view robot, SphereFormat format) {
 SphereFormatFile read_robot_spheres(const fs::path& path, const SphereReadOptions& options) {
   const std::string bytes = read_file(path);
   std::string_view text = bytes;
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text.remove_prefix(internal::byte_order_mark(text).size());
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos) throw Error(path.string(), "is empty");
   const std::string file = path.string();

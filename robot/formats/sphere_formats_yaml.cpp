@@ -159,9 +159,8 @@ void read_xrdf(const YamlMembers& root, SphereGatherer& gathered) {
 
 }  // namespace
 
-SphereFormat gather_sphere_yaml(std::string_view text, const fs::path& path,
-                                SphereGatherer& gathered) {
-  const YamlMembers root = yaml_members(yaml_document(text, gathered), "the file", gathered);
+SphereFormat gather_spheres(const YamlMembers& root, const fs::path& path,
+                            SphereGatherer& gathered) {
   const auto format = find_member(root, "format");
   const bool xrdf = format && format->IsScalar() && format->Scalar() == "xrdf";
   if (xrdf) {
@@ -174,7 +173,8 @@ SphereFormat gather_sphere_yaml(std::string_view text, const fs::path& path,
 
 SphereFormatFile read_sphere_yaml(std::string_view text, const fs::path& path) {
   SphereGatherer gathered(path.string(), text.size());
-  const SphereFormat format = gather_sphere_yaml(text, path, gathered);
+  const YamlMembers root = yaml_members(yaml_document(text, gathered), "the file", gathered);
+  const SphereFormat format = gather_spheres(root, path, gathered);
   return {format, std::move(gathered.spheres)};
 }
 

@@ -204,11 +204,8 @@ std::optional<double> estimate_volume_ratio(const TriangleMesh& mesh,
         for (const Sphere& sphere : spheres) add_sphere(sphere, axes, line, limits, inside);
         return inside.length();
       });
-  const double mesh_volume = solid * through_mesh.area;
-  const double sphere_volume = covered * through_spheres.area;
-  if (!(mesh_volume > 0.0 && sphere_volume > 0.0)) return std::nullopt;
-  const double ratio = sphere_volume / mesh_volume;
-  return std::isfinite(ratio) ? std::optional(ratio) : std::nullopt;
+  const double ratio = covered * through_spheres.area / (solid * through_mesh.area);
+  return std::isfinite(ratio) && ratio > 0.0 ? std::optional(ratio) : std::nullopt;
 }
 
 EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external) {

@@ -43,8 +43,8 @@ function(spherule_precompile target kind)
     spherule_declare_precompiled(${kind})
   endif()
   target_precompile_headers(${target} REUSE_FROM spherule_precompiled_${kind})
-  # Four times as many together as by default: a fifth less to compile, and a sixth less of the command than
-  # of twice as many.
+  # Four times the default: the command's sources compile in a sixth (clang) to a quarter (g++) less time than
+  # with twice the default, which saved a fifth of all.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 32)
   if(kind STREQUAL library)
     # In Clang a local name of one source hides that of a header which only another one includes; g++ takes

@@ -60,6 +60,13 @@ std::optional<double> finite_number(std::string_view text) {
   return fault == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+bool has_form_of_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const std::errc fault = parse(text, value);
+  return fault == std::errc() || fault == std::errc::result_out_of_range;
+}
+
 std::optional<std::int64_t> whole_number(std::string_view text) {
   std::int64_t value = 0;
   return parse(text, value) == std::errc() ? std::optional(value) : std::nullopt;
@@ -68,6 +75,11 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
 std::string number_text(double number) {
   std::array<char, 32> text{};  // the longest takes 24
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+
+std::string_view byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  return text.substr(0, text.starts_with(kMark) ? kMark.size() : 0);
 }
 
 std::vector<std::string_view> words_of(std::string_view text) {

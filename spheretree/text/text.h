@@ -18,12 +18,19 @@ namespace spherule::internal {
 // and what is too large for a double.
 std::optional<double> finite_number(std::string_view text);
 
+// Whether a text looks like one decimal number, though finite_number() may have no value for it:
+// also infinities, "nan", what is too large for a double, and "+-1".
+bool has_form_of_number(std::string_view text);
+
 // The value of a text that is one whole number and nothing else: digits only, with a minus sign
 // where it is negative. Nothing for other texts and what std::int64_t cannot hold.
 std::optional<std::int64_t> whole_number(std::string_view text);
 
 // The shortest decimal text from which finite_number() gets a finite number back, bit for bit.
 std::string number_text(double number);
+
+// The byte order mark that a text in UTF-8 begins with; empty where there is none.
+std::string_view byte_order_mark(std::string_view text);
 
 // The words of a text, apart by blanks, tabs and ends of lines.
 std::vector<std::string_view> words_of(std::string_view text);

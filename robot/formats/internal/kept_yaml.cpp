@@ -6,6 +6,7 @@
 #include "robot/formats/internal/yaml_nodes.h"
 #include "robot/formats/internal/yaml_rewriter.h"
 #include "spheretree/error.h"
+#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <map>
@@ -93,11 +94,10 @@ Node parent_of(const Node& root, const Keys& keys) {
 // With what the file says of spheres beside these: what it switches off, but for spheres of links
 // that cuRobo is not told of and that get others, and all spheres of other links. What cannot be
 // read is replaced.
-RobotSpheres with_kept_spheres(RobotSpheres spheres, std::string_view text,
-                               const std::filesystem::path& path) {
-  SphereGatherer old(path.string(), text.size());
+RobotSpheres with_kept_spheres(RobotSpheres spheres, const YamlMembers& root,
+                               const std::filesystem::path& path, SphereGatherer old) {
   try {
-    gather_sphere_yaml(text, path, old);
+    gather_spheres(root, path, old);
   } catch (const Error&) {
     return spheres;
   }
@@ -287,14 +287,14 @@ class KeptYaml {
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format) {
   // Columns of the first line are counted behind it.
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  const std::string mark(text.starts_with(kByteOrderMark) ? kByteOrderMark : "");
+  const std::string mark(byte_order_mark(text));
   text.remove_prefix(mark.size());
   const SphereGatherer gathered(path.string(), text.size());
   const Node document = yaml_document(text, gathered);
-  const KeptPlaces places =
-      places_in(yaml_members(document, "the file", gathered), format, gathered);
-  const RobotSpheres with_kept = with_kept_spheres(spheres, text, path);
+  const YamlMembers root = yaml_members(document, "the file", gathered);
+  const KeptPlaces places = places_in(root, format, gathered);
+  const RobotSpheres with_kept =
+      with_kept_spheres(spheres, root, path, SphereGatherer(path.string(), text.size()));
   const auto changed = [&](std::string_view old) {
     return KeptYaml(old, spheres, with_kept, places, gathered).changed();
   };

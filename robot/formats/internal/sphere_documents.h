@@ -88,8 +88,6 @@ std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& 
 
 // YAML: cuRobo or XRDF.
 SphereFormatFile read_sphere_yaml(std::string_view text, const std::filesystem::path& path);
-SphereFormat gather_sphere_yaml(std::string_view text, const std::filesystem::path& path,
-                                SphereGatherer& gathered);
 // A file with other spheres of these links, and with the pairs that it does not ignore yet: all
 // other bytes as they are or, where its style does not allow that, written anew without its
 // comments. What it switches off stays, and so do the spheres of other links; those of a file

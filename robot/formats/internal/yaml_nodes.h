@@ -5,6 +5,7 @@
 
 #include "robot/formats/internal/sphere_documents.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,5 +47,9 @@ YamlMembers members_if_there(const YamlMembers& parent, const std::string& key,
 
 // The name of the geometry that collision checks of an XRDF use.
 std::string xrdf_geometry(const YamlMembers& root, const SphereGatherer& gathered);
+
+// Gathers the spheres and pairs of a file with these members, and of one beside it that it names.
+SphereFormat gather_spheres(const YamlMembers& root, const std::filesystem::path& path,
+                            SphereGatherer& gathered);
 
 }  // namespace spherule::internal

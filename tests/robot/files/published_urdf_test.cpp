@@ -32,12 +32,14 @@ TEST(PublishedUrdf, WidensShapesWithoutExtent) {
       <visual> <geometry> <box size="0 0 0"/> </geometry> </visual>
       <visual> <geometry> <sphere radius="0.0"/> </geometry> </visual>
       <visual> <geometry> <box size="1 0 2"/> </geometry> </visual>
+      <visual> <geometry> <sphere radius="1e-6"/> </geometry> </visual>
       <collision> <origin xyz="1 2 3"/> <geometry> <sphere radius="0"/> </geometry> </collision>
       <collision> <geometry> <cylinder radius="0" length="0"/> </geometry> </collision>)"));
   const LinkDescription& link = robot.links[0];
-  ASSERT_EQ(link.visual.size(), 1U);
+  ASSERT_EQ(link.visual.size(), 2U);
   const auto solid = [](const LinkShape& shape) { return std::get<Primitive>(shape.geometry); };
   EXPECT_EQ(std::get<Box>(solid(link.visual[0])).size, Eigen::Vector3d(1, 1e-6, 2));
+  EXPECT_EQ(std::get<SolidSphere>(solid(link.visual[1])).radius, 1e-6);
   ASSERT_EQ(link.collision.size(), 2U);
   EXPECT_EQ(std::get<SolidSphere>(solid(link.collision[0])).radius, 1e-6);
   EXPECT_EQ(link.collision[0].link_from_shape.translation(), Eigen::Vector3d(1, 2, 3));
