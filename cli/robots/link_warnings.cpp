@@ -3,6 +3,8 @@
 
 #include "cli/text/message.h"
 
+#include <cstddef>
+
 namespace spherule {
 
 decltype(RobotCoverOptions::on_doubt) LinkWarnings::on_doubt(ProgressBar& bar) {
@@ -17,8 +19,12 @@ void LinkWarnings::print(const LinkCover& link) {
 }
 
 void LinkWarnings::print(const std::string& link, const std::string& warning) {
-  const auto [line, is_new] = printed_.insert("link " + link + ": " + warning);
-  if (is_new) warn(*line);
+  if (!printed_.insert(link + ": " + warning).second) return;
+  const std::string own = "link " + link + ": ";
+  const std::size_t end_of_figures = warning.find("): ");
+  const bool is_explained = end_of_figures != std::string::npos &&
+                            !explained_.insert(warning.substr(0, warning.find(" ("))).second;
+  warn(own + (is_explained ? warning.substr(0, end_of_figures + 1) : warning));
 }
 
 }  // namespace spherule

@@ -11,7 +11,8 @@ namespace spherule {
 
 // The warnings about the links of a robot that is covered, each once on standard error: doubts
 // about sizes before the long work, in which a search for a goal covers links again and again, and
-// the rest after it.
+// the rest after it. What follows the figures in brackets, "open (8 edges): ...", explains them,
+// and is printed for the first link of which the same is said.
 class LinkWarnings {
  public:
   // For the field of that name in the options; refers to this and the bar.
@@ -24,6 +25,7 @@ class LinkWarnings {
   void print(const std::string& link, const std::string& warning);
 
   std::set<std::string> printed_;
+  std::set<std::string> explained_;
 };
 
 }  // namespace spherule

@@ -334,5 +334,27 @@ TEST_F(MessagesTest, AnotherGeometryForSelfCollisionsIsTold) {
             "not read: these are checked with the spheres of the geometry for collisions, too\n");
 }
 
+TEST_F(MessagesTest, OpenMeshesOfLinksAreExplainedOnce) {
+  write("sheet.obj", "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nf 1 2 3\n");
+  const std::string sheet =
+      R"("><visual><geometry><mesh filename="sheet.obj"/></geometry></visual></link>)";
+  write("sheet.urdf", R"(<robot name="sheet"><link name="base)" + sheet + R"(<link name="tip)" +
+                          sheet + R"(<joint name="j" type="fixed"><parent link="base"/>
+           <child link="tip"/></joint></robot>)");
+  const Outcome result = run({"robot", "sheet.urdf", "-o", ".", "--geometry", "visual", "--effort",
+                              "0", "--format", "tree"});
+  EXPECT_EQ(result.exit_code, 0);
+  // It is explained once; the report explains it of each.
+  const std::string figures = "its mesh is open (3 edges with one triangle, 0 with more than two)";
+  const std::string why = ": the surface is covered in any case";
+  EXPECT_TRUE(result.err.starts_with("spherule: warning: link base: " + figures + why))
+      << result.err;
+  EXPECT_NE(result.err.find("\nspherule: warning: link tip: " + figures + "\n"), std::string::npos)
+      << result.err;
+  for (const nlohmann::json& link : read_json("sheet.report.json").at("links")) {
+    EXPECT_TRUE(link.at("warnings").at(0).get<std::string>().starts_with(figures + why));
+  }
+}
+
 }  // namespace
 }  // namespace spherule

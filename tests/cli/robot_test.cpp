@@ -307,20 +307,6 @@ TEST_F(RobotTest, OptionsOfOneLinkAndOfAnSrdfCount) {
   EXPECT_FALSE(by_link(read_back("arm_1.srdf")).empty());
 }
 
-TEST_F(RobotTest, WarnsOfOpenMeshes) {
-  write("sheet.obj", "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nf 1 2 3\n");
-  write("sheet.urdf",
-        R"(<robot name="sheet"><link name="base"><visual><geometry><mesh filename="sheet.obj"/>
-           </geometry></visual></link></robot>)");
-  const Outcome result = run({"robot", "sheet.urdf", "-o", ".", "--geometry", "visual", "--effort",
-                              "0", "--format", "tree"});
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(result.err.starts_with("spherule: warning: link base: its mesh is open"))
-      << result.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"arm.urdf", "lug.stl", "parts", "sheet.base.tree",
-                                               "sheet.obj", "sheet.report.json", "sheet.urdf"}));
-}
-
 TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
   const auto refuse = [&](const std::vector<std::string>& more, const std::string& reason) {
     expect_refusal(command(more), reason);
