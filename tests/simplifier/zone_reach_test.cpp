@@ -36,7 +36,7 @@ Zone box_zone(const Vector3d& low, const Vector3d& high, double diameter) {
 }
 
 constexpr double kStep = kSanitized ? 0.9 : 0.6;
-constexpr std::array kSteps = {kStep, kSanitized ? 0.67 : 0.51};
+const std::vector<double> kSteps = effort(std::vector{kStep, 0.51}, 1);
 
 ExternalSpheres placed(const TriangleMesh& mesh, std::vector<Zone> zones, double step = kStep) {
   ExternalOptions options;

@@ -56,14 +56,14 @@ TEST_F(AuditRobot, LeaksOfCurvedShapesAreTheirOwn) {
     const std::vector<LinkSpheres> spheres{{"ball", {{Vector3d::Zero(), radius}}}};
     return *audit_robot(ball, spheres).links.front().certificate;
   };
-  const Certificate equal = audited(0.01);
-  EXPECT_TRUE(equal.covered);
-  EXPECT_EQ(equal.uncovered_depth.upper, 0.0);
   const Certificate less = audited(0.009);
   EXPECT_LE(less.uncovered_depth.lower, 0.001);
   EXPECT_GE(less.uncovered_depth.lower, 0.0004);
   EXPECT_GE(less.uncovered_depth.upper, 0.001);
   if (test::kSanitized) return;  // each takes seconds there
+  const Certificate equal = audited(0.01);
+  EXPECT_TRUE(equal.covered);
+  EXPECT_EQ(equal.uncovered_depth.upper, 0.0);
   EXPECT_EQ(audited(0.0101).uncovered_depth.lower, 0.0);
   EXPECT_EQ(audited(0.0099).uncovered_depth.lower, 0.0);
   const Certificate more = audited(0.02);
