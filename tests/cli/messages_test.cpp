@@ -351,7 +351,8 @@ TEST_F(MessagesTest, OpenMeshesOfLinksAreExplainedOnce) {
       << result.err;
   EXPECT_NE(result.err.find("\nspherule: warning: link tip: " + figures + "\n"), std::string::npos)
       << result.err;
-  for (const nlohmann::json& link : read_json("sheet.report.json").at("links")) {
+  const nlohmann::json report = read_json("sheet.report.json");
+  for (const nlohmann::json& link : report.at("links")) {
     EXPECT_TRUE(link.at("warnings").at(0).get<std::string>().starts_with(figures + why));
   }
 }
