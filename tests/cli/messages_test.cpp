@@ -341,9 +341,13 @@ TEST_F(MessagesTest, OpenMeshesOfLinksAreExplainedOnce) {
   write("sheet.urdf", R"(<robot name="sheet"><link name="base)" + sheet + R"(<link name="tip)" +
                           sheet + R"(<joint name="j" type="fixed"><parent link="base"/>
            <child link="tip"/></joint></robot>)");
+  std::vector<std::string> expected = files();
+  expected.insert(expected.end(), {"sheet.base.tree", "sheet.report.json", "sheet.tip.tree"});
+  std::sort(expected.begin(), expected.end());
   const Outcome result = run({"robot", "sheet.urdf", "-o", ".", "--geometry", "visual", "--effort",
                               "0", "--format", "tree"});
   EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(files(), expected);
   // It is explained once; the report explains it of each.
   const std::string figures = "its mesh is open (3 edges with one triangle, 0 with more than two)";
   const std::string why = ": the surface is covered in any case";
