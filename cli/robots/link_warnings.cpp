@@ -19,12 +19,12 @@ void LinkWarnings::print(const LinkCover& link) {
 }
 
 void LinkWarnings::print(const std::string& link, const std::string& warning) {
-  if (!printed_.insert(link + ": " + warning).second) return;
-  const std::string own = "link " + link + ": ";
+  const std::string subject = "link " + link + ": ";
+  if (!printed_.insert(subject + warning).second) return;
   const std::size_t end_of_figures = warning.find("): ");
   const bool is_explained = end_of_figures != std::string::npos &&
                             !explained_.insert(warning.substr(0, warning.find(" ("))).second;
-  warn(own + (is_explained ? warning.substr(0, end_of_figures + 1) : warning));
+  warn(subject + (is_explained ? warning.substr(0, end_of_figures + 1) : warning));
 }
 
 }  // namespace spherule
