@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/checkers/fcl_mesh_checker.h"
 
-#include "bench/checkers/fcl_float.h"
+#include "bench/checkers/fcl_meshes.h"
 #include "bench/checkers/fcl_models.h"
 
 #include <memory>
@@ -9,17 +9,6 @@
 
 namespace spherule {
 namespace {
-
-template <class Volume>
-bool meshes_touch(const fcl::CollisionGeometry<typename Volume::S>& a,
-                  const fcl::Transform3<typename Volume::S>& world_from_a,
-                  const fcl::CollisionGeometry<typename Volume::S>& b,
-                  const fcl::Transform3<typename Volume::S>& world_from_b) {
-  using S = typename Volume::S;
-  fcl::CollisionRequest<S> request;  // one contact, not kept
-  fcl::CollisionResult<S> result;
-  return fcl::collide(&a, world_from_a, &b, world_from_b, request, result) > 0;
-}
 
 template <class Volume>
 class BoxesThenMeshes : public SingleChecker {
@@ -47,8 +36,8 @@ class BoxesThenMeshes : public SingleChecker {
       for (const std::size_t i : body.against) {
         const Static& obstacle = obstacles_[i];
         if (box.intersects(obstacle.box) &&
-            meshes_touch<Volume>(*body.model.geometry, pose, *obstacle.model.geometry,
-                                 obstacle.pose)) {
+            fcl_meshes_touch<Volume>(*body.model.geometry, pose, *obstacle.model.geometry,
+                                     obstacle.pose)) {
           return true;
         }
       }
@@ -124,8 +113,8 @@ class ManagerThenMeshes : public SingleChecker {
     for (const auto* left_out : query.body->left_out) {
       if (a == left_out || b == left_out) return false;
     }
-    query.hit = meshes_touch<Volume>(*a->collisionGeometry(), a->getTransform(),
-                                     *b->collisionGeometry(), b->getTransform());
+    query.hit = fcl_meshes_touch<Volume>(*a->collisionGeometry(), a->getTransform(),
+                                         *b->collisionGeometry(), b->getTransform());
     return query.hit;
   }
 

@@ -4,6 +4,7 @@
 #include "bench/scenes/inverse_kinematics.h"
 #include "bench/scenes/program.h"
 #include "bench/scenes/spherical_wrist.h"
+#include "bench/scenes/turn_between.h"
 #include "bench/scenes/weld_pass.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/error.h"
@@ -25,7 +26,7 @@ constexpr std::size_t kSeams = 3;
 Pose world_from_wire(const SeamPoint& seam, double angle) {
   const Vector3d normal = (seam.normal_a + seam.normal_b).normalized();
   const Vector3d away = (normal + 2.0 * Vector3d::UnitZ()).normalized();
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), -away) *
+  const Eigen::Quaterniond turn = turn_between(Vector3d::UnitZ(), -away) *
                                   Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));
   return world_from_workpiece() * Pose(turn, seam.point + standoff(seam) * normal);
 }

@@ -5,8 +5,8 @@
 
 namespace spherule {
 
-// The smallest rotation that takes `from` to `to`: Eigen's, which for opposite vectors holds a
-// singular value decomposition and takes ten seconds wherever it is compiled.
+// The smallest rotation that takes `from` to `to`; of opposite vectors, a half turn. As Eigen's
+// FromTwoVectors(), whose singular value decomposition takes seven seconds wherever it is compiled.
 Eigen::Quaterniond turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace spherule

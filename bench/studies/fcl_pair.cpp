@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/studies/fcl_pair.h"
 
-#include "bench/checkers/fcl_float.h"
+#include "bench/checkers/fcl_meshes.h"
 #include "bench/checkers/fcl_models.h"
 
 #include <memory>
@@ -22,17 +22,12 @@ class FclPair : public PairEngine {
 
   bool collides(std::size_t pose) override {
     if (boxes_in_front_ && !a_.world_box(poses_[pose]).intersects(box_)) return false;
-    const fcl::CollisionRequest<S> request;  // one contact, not kept
-    fcl::CollisionResult<S> result;
-    return fcl::collide(a_.geometry.get(), poses_[pose], b_.geometry.get(), world_from_b_, request,
-                        result) > 0;
+    return fcl_meshes_touch<Volume>(*a_.geometry, poses_[pose], *b_.geometry, world_from_b_);
   }
 
   double distance(std::size_t pose) override {
-    const fcl::DistanceRequest<S> request;  // without the points
-    fcl::DistanceResult<S> result;
-    return static_cast<double>(fcl::distance(a_.geometry.get(), poses_[pose], b_.geometry.get(),
-                                             world_from_b_, request, result));
+    return static_cast<double>(
+        fcl_mesh_distance<Volume>(*a_.geometry, poses_[pose], *b_.geometry, world_from_b_));
   }
 
  private:

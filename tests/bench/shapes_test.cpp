@@ -3,6 +3,7 @@
 
 #include "bench/scenes/mesh_facts.h"
 #include "bench/scenes/solids.h"
+#include "bench/scenes/turn_between.h"
 #include "spheretree/error.h"
 
 #include <gtest/gtest.h>
@@ -122,6 +123,21 @@ TEST(Solids, ATubeAlongAPathIsClosed) {
   const TriangleMesh tube = tube_along(path, std::vector<double>{0.2, 0.2, 0.3, 0.1}, 12);
   EXPECT_TRUE(is_closed(tube));
   EXPECT_GT(signed_volume(tube), 0.0);
+}
+
+TEST(TurnBetween, TakesTheOneToTheOtherByTheSmallestTurn) {
+  const Eigen::Vector3d from(0.3, -2.0, 0.5);
+  for (const Eigen::Vector3d& to : std::vector<Eigen::Vector3d>{{4.0, 1.0, -0.2},
+                                                                {0.3, -2.0, 0.5},
+                                                                {-0.3, 2.0, -0.5},
+                                                                {-0.3, 2.0, -1.0},
+                                                                {2.0, 0.3, 0.0}}) {
+    const Eigen::Quaterniond turn = turn_between(from, to);
+    EXPECT_LT((turn * from.normalized() - to.normalized()).norm(), 1e-12) << to.transpose();
+    EXPECT_NEAR(turn.norm(), 1.0, 1e-12);
+    const double cosine = from.normalized().dot(to.normalized());
+    EXPECT_NEAR(2.0 * turn.w() * turn.w() - 1.0, cosine, 1e-12) << to.transpose();
+  }
 }
 
 }  // namespace
