@@ -2,6 +2,7 @@
 #include "spheretree/check.h"
 
 #include "spheretree/internal/node_spheres.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -176,6 +177,7 @@ class Checker {
 }  // namespace
 
 TreeReport check(const SphereTreeData& data) {
+  require_rounding_to_nearest();
   return Checker(data).run();
 }
 

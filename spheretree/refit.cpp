@@ -5,6 +5,7 @@
 #include "spheretree/error.h"
 #include "spheretree/internal/node_spheres.h"
 #include "spheretree/moved_from.h"
+#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cassert>
@@ -16,6 +17,7 @@
 namespace spherule {
 
 SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
+  require_rounding_to_nearest();
   internal::require_content(tree.node_count() > 0, "SphereTree");
   SphereTreeData& data = tree.data_;
   if (moved.size() != data.spheres.size()) {
