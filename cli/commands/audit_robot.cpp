@@ -13,6 +13,7 @@
 #include "cli/pages/page_output.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/audit_robot_report.h"
+#include "cli/robots/link_warnings.h"
 #include "cli/robots/pair_kinds.h"
 #include "cli/robots/pair_report.h"
 #include "cli/robots/sphere_input.h"
@@ -135,10 +136,6 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
   return steps;
 }
 
-void warn_of_link(const std::string& link, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) warn("link " + link + ": " + warning);
-}
-
 bool has_shrinking_buffers(const RobotSpheres& spheres) {
   return spheres.collision_buffer < 0.0 ||
          std::any_of(spheres.collision_buffers.begin(), spheres.collision_buffers.end(),
@@ -216,9 +213,10 @@ void print(const AuditRobotArguments& arguments, const AuditInput& input,
 
 void warn_of(const AuditRobotArguments& arguments, const AuditInput& input,
              const RobotAuditReport& report) {
-  for (const LinkAudit& link : report.audit.links) warn_of_link(link.link, link.warnings);
+  LinkWarnings of_links;
+  for (const LinkAudit& link : report.audit.links) of_links.print(link.link, link.warnings);
   if (report.repair) {
-    for (const LinkRepair& link : report.repair->links) warn_of_link(link.link, link.warnings);
+    for (const LinkRepair& link : report.repair->links) of_links.print(link.link, link.warnings);
   }
   if (report.pairs) {
     for (const std::string& warning : wrong_pairs(report.pairs->judgement, input.robot.model)) {

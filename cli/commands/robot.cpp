@@ -220,7 +220,7 @@ Json summary_of(const std::string& urdf, const RobotModel& model, const Measured
 void print_warnings(const RobotCover& cover, LinkWarnings& of_links,
                     const std::vector<std::string>& wrong_pairs,
                     const std::vector<PostureContact>& contacts) {
-  for (const LinkCover& link : cover.links) of_links.print(link);
+  for (const LinkCover& link : cover.links) of_links.print(link.link, link.warnings);
   for (const std::string& warning : wrong_pairs) warn(warning);
   for (const std::string& warning : contact_warnings(contacts)) warn(warning);
 }

@@ -77,7 +77,7 @@ SphereRobot cover_sphere_robot(const std::string& urdf, const RobotDescription& 
     if (link.fit && !link.fit->certificate.covered) {
       throw Error(urdf, "link " + link.link + ": its spheres are not proved to cover all of it");
     }
-    warnings.print(link);
+    warnings.print(link.link, link.warnings);
     spheres.push_back({link.link, link.spheres});
   }
   SphereRobot result{with_spheres(robot.model, spheres), {}};

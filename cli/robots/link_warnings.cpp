@@ -14,8 +14,8 @@ decltype(RobotCoverOptions::on_doubt) LinkWarnings::on_doubt(ProgressBar& bar) {
   };
 }
 
-void LinkWarnings::print(const LinkCover& link) {
-  for (const std::string& warning : link.warnings) print(link.link, warning);
+void LinkWarnings::print(const std::string& link, std::span<const std::string> warnings) {
+  for (const std::string& warning : warnings) print(link, warning);
 }
 
 void LinkWarnings::print(const std::string& link, const std::string& warning) {
