@@ -59,8 +59,9 @@ struct RobotRepair {
 };
 
 // Makes the spheres of every link cover its mesh, by repair(): no sphere is moved or shrunk.
-// Spheres of links without geometry stay as they are. Throws Error as repair(), and as
-// audit_robot() for the robot and its spheres.
+// Spheres of links without geometry stay as they are. Throws Error as repair(), as
+// audit_robot() for the robot and its spheres, and for a link more than 10,000 times max_error
+// across.
 RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                          const RobotRepairOptions& options = {});
 

@@ -2,6 +2,7 @@
 #include "robot/cover/robot_spheres.h"
 
 #include "mesh/mesh_report.h"
+#include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
@@ -21,15 +22,6 @@
 namespace spherule {
 namespace {
 
-// Nobody wants the hundred million spheres that such a link requires.
-constexpr double kMostErrorsAcross = 1e4;
-// A link above the first length is probably in millimetres, as is one above the second that is
-// also so many times its E across.
-constexpr double kMostMetresAcross = 100.0;
-constexpr double kUsualMetresAcross = 10.0;
-constexpr double kUsualErrorsAcross = 1e3;
-constexpr const char* kScaleOfMillimetres =
-    "their scale has to be 0.001 (in a URDF: <mesh scale=\"0.001 0.001 0.001\" .../>)";
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
 
@@ -128,18 +120,6 @@ void require_errors_below_sizes(const std::vector<Task>& tasks) {
   throw Error("max error", reason.str());
 }
 
-// A sentence where a link is so large that its meshes are rather in millimetres.
-std::string size_doubt(const Task& task) {
-  const bool is_large =
-      task.across > kUsualMetresAcross && task.across > kUsualErrorsAcross * task.options.max_error;
-  if (!is_large && task.across <= kMostMetresAcross) return "";
-  std::ostringstream text;
-  text << "it is " << task.across << " m across: if its meshes are in millimetres, "
-       << kScaleOfMillimetres;
-  if (is_large) text << "; so many times the max error takes long";
-  return text.str();
-}
-
 std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOptions& options,
                              std::size_t threads) {
   std::vector<Task> tasks;
@@ -162,15 +142,12 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& v : task.mesh.vertices) box.extend(v);
     task.across = box.diagonal().norm();
-    if (task.across <= kMostErrorsAcross * max_error) return;
-    std::ostringstream reason;
-    reason << "is " << task.across << " m across, too much for a max error of " << max_error
-           << " m: are its meshes in millimetres? Then " << kScaleOfMillimetres;
-    throw Error(subject_of(link.name), reason.str());
+    const std::string fault = internal::size_fault(task.across, max_error);
+    require(fault.empty(), subject_of(link.name), fault);
   });
   require_errors_below_sizes(tasks);
   for (Task& task : tasks) {
-    task.doubt = size_doubt(task);
+    task.doubt = internal::size_doubt(task.across, task.options.max_error);
     if (!task.doubt.empty() && options.on_doubt) {
       options.on_doubt(robot.links[task.link].name, task.doubt);
     }

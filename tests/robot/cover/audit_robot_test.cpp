@@ -217,6 +217,22 @@ TEST_F(AuditRobot, RepairCovers) {
   }
 }
 
+// As it is when it is to be covered: in five minutes the repair did not end.
+TEST(AuditRobotSizes, NoRepairOfALinkThatIsFarTooLargeForItsError) {
+  RobotDescription robot{.name = "hall", .model = RobotModel("wall")};
+  const Primitive wall = Box{.size = {40, 30, 20}};
+  robot.links = {{.name = "wall", .collision = {{.name = "", .geometry = wall}}}};
+  const std::vector<LinkSpheres> spheres = {{"wall", {{{0, 0, 0}, 1.0}}}};
+  try {
+    repair_robot(robot, spheres, {.max_error = 0.005});
+    FAIL() << "was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.subject(), "link 'wall', mesh");
+    EXPECT_EQ(error.reason().find("is 53.8516 m across, too much for a max error of 0.005 m"), 0U)
+        << error.reason();
+  }
+}
+
 // The limit of the grid's cells in the place of a link that is as large as the usual one needs: a
 // quarter of it is for a diameter that is chosen.
 TEST_F(AuditRobot, TheSolidOfALinkIsThatOfACoverAndItsWarningToo) {
