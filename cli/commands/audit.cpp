@@ -6,6 +6,7 @@
 #include "cli/files/model_unit.h"
 #include "cli/files/output.h"
 #include "cli/files/result_warnings.h"
+#include "cli/files/unit_warnings.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/options/threads_option.h"
@@ -17,6 +18,7 @@
 #include "cli/text/next_step.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
+#include "mesh/mesh_report.h"
 #include "simplifier/leak_points.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
@@ -146,14 +148,19 @@ void print(const AuditArguments& arguments, const TriangleMesh& mesh, const Sphe
             << describe(mended->certificate, name_of(external));
 }
 
+struct Reading {
+  ModelReadOptions options;
+  ModelUnit unit;
+};
+
 // Reads as the file says, or as the command line does; lengths of the command line become those of
 // the output.
-ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& file) {
+Reading reading_of(const AuditArguments& arguments, const SphereFile& file) {
   const ModelReadOptions stored =
       blame_file(arguments.spheres, [&] { return stored_reading(file); });
   UnitArguments unit = arguments.unit;
   take_stored_unit(arguments.spheres, file, stored, unit);
-  const ModelUnit found = [&] {
+  ModelUnit found = [&] {
     try {
       return model_unit(arguments.models.front(), unit);
     } catch (const Error& error) {
@@ -169,7 +176,16 @@ ModelReadOptions reading_of(const AuditArguments& arguments, const SphereFile& f
   ModelReadOptions reading = arguments.unit.scale ? ModelReadOptions{} : stored;
   reading.scale = found.scale;
   reading.units = unit.units;
-  return reading;
+  return {std::move(reading), std::move(found)};
+}
+
+// Before the long work.
+void warn_of_lengths(const AuditArguments& arguments, const TriangleMesh& mesh,
+                     const ModelUnit& unit) {
+  const SimplifyOptions lengths{.max_error = arguments.max_error.value_or(0.0),
+                                .min_external_diameter = arguments.min_external.value_or(0.0)};
+  const MeshReport report = mesh_report(mesh, {.self_intersections = false});
+  warn_each(arguments.models.front(), length_warnings(report, lengths, unit));
 }
 
 // With more than two files the last is the spheres.
@@ -189,11 +205,13 @@ int audit(const AuditArguments& arguments) {
   }
   SimplifyOptions options =
       blame_file(arguments.spheres, [&] { return options_from_record(file.options); });
-  const ModelReadOptions reading = reading_of(arguments, file);
+  const auto [reading, unit] = reading_of(arguments, file);
   ProgressBar bar;
   bar.announce("reading");
   const ModelFile model = read_model(arguments.models.front(), reading);
   const TriangleMesh& mesh = model.mesh;
+  bar.clear();
+  warn_of_lengths(arguments, mesh, unit);
 
   options.threads = arguments.threads;
   options.progress = bar.callback();
@@ -230,11 +248,7 @@ int audit(const AuditArguments& arguments) {
   }
   bar.clear();
   print(arguments, mesh, file, reading.scale, certificate, external, mended);
-  if (mended) {
-    for (const std::string& warning : mended->warnings) {
-      warn(arguments.models.front() + ": " + warning);
-    }
-  }
+  if (mended) warn_each(arguments.models.front(), mended->warnings);
   const bool covered = (mended ? mended->certificate : certificate).covered;
   return covered && !(model.cad && !model.cad->proved) ? kYes : kNo;
 }

@@ -52,10 +52,6 @@ void write_view(const FitArguments& arguments, const TriangleMesh& mesh,
   write_file_atomically(arguments.view, make_view_page(scene));
 }
 
-void warn_each(const std::string& file, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) warn(file + ": " + warning);
-}
-
 // Thin walls need many spheres: there the count goes with the area, however thin they are.
 void warn_of_thin_parts(const FitArguments& arguments, const TriangleMesh& mesh,
                         const Simplification& result) {

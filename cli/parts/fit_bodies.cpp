@@ -59,9 +59,7 @@ void warn_of_bodies(const ModelBodies& model, const std::vector<std::optional<Me
     if (reports[i]->closed) continue;
     if (open++ == 0) first_open = model.bodies[i].name;
   }
-  for (const std::string& warning : length_warnings(all, options, unit)) {
-    warn(name + ": " + warning);
-  }
+  warn_each(name, length_warnings(all, options, unit));
   if (open > 0) {
     tell(std::to_string(open) + (open == 1 ? " body is" : " bodies are") +
          " not closed: only the surface is certain (" + first_open +
@@ -216,11 +214,7 @@ int fit_bodies(FitArguments& arguments) {
   bool is_proved = true;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     is_proved = is_proved && !(model.cad[i] && !model.cad[i]->proved);
-    if (fits[i].fit) {
-      for (const std::string& warning : result_warnings(*fits[i].fit)) {
-        warn(model.bodies[i].name + ": " + warning);
-      }
-    }
+    if (fits[i].fit) warn_each(model.bodies[i].name, result_warnings(*fits[i].fit));
     if (fits[i].broken.empty()) continue;
     is_proved = false;
     tell(arguments.spheres + ": " + model.bodies[i].name + ": " + fits[i].broken);

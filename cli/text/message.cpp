@@ -80,4 +80,8 @@ void warn(std::string_view message) {
   tell("warning: " + std::string(message));
 }
 
+void warn_each(const std::string& subject, std::span<const std::string> warnings) {
+  for (const std::string& warning : warnings) warn(subject + ": " + warning);
+}
+
 }  // namespace spherule

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,5 +15,8 @@ std::string one_line(std::string_view text);
 // message of more than 4000 bytes the middle is left out.
 void tell(std::string_view message);
 void warn(std::string_view message);
+
+// "SUBJECT: WARNING" of each.
+void warn_each(const std::string& subject, std::span<const std::string> warnings);
 
 }  // namespace spherule

@@ -55,6 +55,17 @@ TEST_F(UnitWarnings, NamesTheUnitOfAnErrorThatIsTooSmall) {
                  "use --max-error 0.025m\n");
 }
 
+TEST_F(UnitWarnings, OfARepair) {
+  write_box("part.stl", {0.4, 0.2, 0.1});
+  ASSERT_EQ(fit({"--max-error", "0.02"}).exit_code, 0);
+  const Outcome outcome =
+      run({"audit", "part.stl", "part.json", "--repair", "mended.json", "--max-error", "20"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("spherule: warning: part.stl: the max error 20 is more than a tenth"),
+            std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(UnitWarnings, ADiameterFarBelowTheError) {
   write_box("part.stl", {2, 1, 1});
   const Outcome outcome = fit({"--max-error", "2", "--min-external", "0.19"});
