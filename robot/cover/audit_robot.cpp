@@ -204,6 +204,11 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
   result.links_covered = true;
   for (const LinkParts& part : parts) {
     internal::report(options.progress, part.index, steps, part.link);
+    if (part.first_equal != part.index) {
+      result.links.push_back(result.links[part.first_equal]);
+      result.links.back().link = part.link;
+      continue;
+    }
     LinkAudit audit{.link = part.link, .spheres = part.spheres.size()};
     if (part.mesh) {
       internal::of_link(part.link,

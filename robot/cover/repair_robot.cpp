@@ -5,6 +5,7 @@
 #include "robot/cover/internal/link_solid.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace spherule {
 namespace {
@@ -28,10 +29,17 @@ RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSphe
   result.spheres.assign(spheres.begin(), spheres.end());
   const std::vector<internal::LinkParts> parts =
       internal::parts_of(robot, spheres, options.geometry, nullptr);
+  std::vector<std::size_t> repair_of(parts.size());
   for (const internal::LinkParts& part : parts) {
     internal::report(options.progress, part.index, parts.size(), part.link);
     if (!part.mesh) continue;
-    result.links.push_back(internal::of_link(part.link, [&] { return repaired(part, options); }));
+    if (part.first_equal != part.index) {
+      result.links.push_back(result.links[repair_of[part.first_equal]]);
+      result.links.back().link = part.link;
+    } else {
+      result.links.push_back(internal::of_link(part.link, [&] { return repaired(part, options); }));
+    }
+    repair_of[part.index] = result.links.size() - 1;
     const std::vector<Sphere>& mended = result.links.back().repair.spheres;
     const auto there =
         std::find_if(result.spheres.begin(), result.spheres.end(),

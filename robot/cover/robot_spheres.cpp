@@ -2,6 +2,7 @@
 #include "robot/cover/robot_spheres.h"
 
 #include "mesh/mesh_report.h"
+#include "robot/cover/internal/equal_links.h"
 #include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
 #include "robot/model/internal/link_paths.h"
@@ -13,10 +14,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 namespace spherule {
@@ -25,9 +30,9 @@ namespace {
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
 
-// A link that has something to cover.
+// Links that have something to cover, and all the same.
 struct Task {
-  std::size_t link = 0;  // index
+  std::vector<std::size_t> links;  // indices
   TriangleMesh mesh;
   SimplifyOptions options;
   double across = 0.0;  // the diagonal of the mesh's box
@@ -120,21 +125,39 @@ void require_errors_below_sizes(const std::vector<Task>& tasks) {
   throw Error("max error", reason.str());
 }
 
-std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOptions& options,
-                             std::size_t threads) {
+// Meshes not yet read.
+std::vector<Task> tasks_of(const RobotDescription& robot, const RobotCoverOptions& options) {
   std::vector<Task> tasks;
+  const std::vector<std::size_t> first = internal::first_equal_links(robot, options.geometry);
+  // By the first equal link and the lengths: the task of those without zones.
+  std::map<std::tuple<std::size_t, double, double, double>, std::size_t> known;
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     const LinkDescription& link = robot.links[i];
     if (link_shapes(link, options.geometry).empty()) continue;
-    tasks.push_back({.link = i, .mesh = {}, .options = options_for(link.name, options)});
+    SimplifyOptions own = options_for(link.name, options);
+    if (own.zones.empty()) {
+      const auto [task, is_new] = known.try_emplace(
+          {first[i], own.max_error, own.min_external_diameter, own.padding}, tasks.size());
+      if (!is_new) {
+        tasks[task->second].links.push_back(i);
+        continue;
+      }
+    }
+    tasks.push_back({.links = {i}, .mesh = {}, .options = std::move(own)});
   }
+  return tasks;
+}
+
+std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOptions& options,
+                             std::size_t threads) {
+  std::vector<Task> tasks = tasks_of(robot, options);
   const bool collision = options.geometry == LinkGeometry::kCollision;
   require(!tasks.empty(), robot.name,
           std::string("no link has ") + (collision ? "collision" : "visual") +
               " geometry; try the other one, " + (collision ? "visual" : "collision"));
   internal::share_work(tasks.size(), threads, [&](std::size_t, std::size_t i) {
     Task& task = tasks[i];
-    const LinkDescription& link = robot.links[task.link];
+    const LinkDescription& link = robot.links[task.links.front()];
     const double max_error = task.options.max_error;
     task.mesh = *link_mesh(link, {.geometry = options.geometry,
                                   .chord_error = kChordErrorOfError * max_error,
@@ -148,9 +171,8 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
   require_errors_below_sizes(tasks);
   for (Task& task : tasks) {
     task.doubt = internal::size_doubt(task.across, task.options.max_error);
-    if (!task.doubt.empty() && options.on_doubt) {
-      options.on_doubt(robot.links[task.link].name, task.doubt);
-    }
+    if (task.doubt.empty() || !options.on_doubt) continue;
+    for (const std::size_t link : task.links) options.on_doubt(robot.links[link].name, task.doubt);
   }
   return tasks;
 }
@@ -193,6 +215,14 @@ LinkCover cover_link(const std::string& link, const Task& task, double weld) {
   return cover;
 }
 
+// Found without work.
+LinkCover of_equal_link(LinkCover cover, const std::string& link) {
+  cover.link = link;
+  cover.seconds = 0.0;
+  cover.fit->times = {};
+  return cover;
+}
+
 // Links are covered side by side by some of the threads; the others help within links, which is
 // what is left to do when the last links are long ones.
 struct ThreadShares {
@@ -223,7 +253,7 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
   std::atomic<std::size_t> done = 0;
   internal::share_work(tasks.size(), threads.links, [&](std::size_t, std::size_t i) {
     Task& task = tasks[i];
-    const std::string& name = robot.links[task.link].name;
+    const std::string& name = robot.links[task.links.front()].name;
     const auto tell = [&] {
       const double share = static_cast<double>(done) / static_cast<double>(tasks.size());
       if (options.progress) options.progress(share, name.c_str());
@@ -231,9 +261,13 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
     if (options.progress) task.options.progress = [&tell](double, const char*) { tell(); };
     task.options.threads = threads.within;
     tell();
-    result.links[task.link] = cover_link(name, task, options.weld);
-    result.links[task.link].fit->options.progress = {};
-    result.links[task.link].fit->options.stop = {};
+    LinkCover& cover = result.links[task.links.front()];
+    cover = cover_link(name, task, options.weld);
+    cover.fit->options.progress = {};
+    cover.fit->options.stop = {};
+    for (const std::size_t link : std::span(task.links).subspan(1)) {
+      result.links[link] = of_equal_link(cover, robot.links[link].name);
+    }
     ++done;
     tell();
   });

@@ -79,7 +79,7 @@ struct LinkCover {
   std::optional<Simplification> fit = std::nullopt;
   std::size_t triangles = 0;  // of the link's mesh, tessellated primitives included
   double vertex_error = 0.0;  // of that mesh; in the fit's padding
-  double seconds = 0.0;       // on the wall clock
+  double seconds = 0.0;       // on the wall clock; 0 where an equal link was covered before
   // For a person: an open mesh, promises that are not proved.
   std::vector<std::string> warnings = {};
 };
@@ -96,7 +96,8 @@ struct RobotCover {
 // `fit` says so; links_not_proved() names the others. What is covered is the link's mesh grown by
 // its vertex error and the padding (link_mesh.h), so that exact primitives are covered too; their
 // tessellation lies outside of them by at most E / 16, which counts as mesh. S is that mesh
-// simplified for things not smaller than D. Equal input and options give equal spheres on any
+// simplified for things not smaller than D. Links with the same shapes, E, D and padding, and
+// without zones, are covered once. Equal input and options give equal spheres on any
 // number of threads, unless `seconds` is set or a stop is requested.
 //
 // Throws Error for options out of range, an option for a link that does not exist or has no such

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/internal/link_parts.h"
 
+#include "robot/cover/internal/equal_links.h"
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -19,6 +21,21 @@ bool has_curved_shapes(const LinkDescription& link, LinkGeometry geometry) {
   });
 }
 
+// `first` are the first links of the same shapes.
+void find_equal(std::vector<LinkParts>& parts, const std::vector<std::size_t>& first) {
+  std::map<std::size_t, std::vector<std::size_t>> different;  // parts by their first link
+  for (LinkParts& part : parts) {
+    std::vector<std::size_t>& known = different[first[part.index]];
+    const auto equal = std::ranges::find_if(
+        known, [&](std::size_t other) { return parts[other].spheres == part.spheres; });
+    if (equal != known.end()) {
+      part.first_equal = *equal;
+    } else {
+      known.push_back(part.index);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
@@ -28,6 +45,7 @@ std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const L
   for (const LinkDescription& link : robot.links) {
     index[link.name] = parts.size();
     parts.push_back({link.name,
+                     parts.size(),
                      parts.size(),
                      link_mesh(link, {.geometry = geometry, .chord_error = kChordError}),
                      has_curved_shapes(link, geometry) ? kChordError : 0.0,
@@ -52,6 +70,7 @@ std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const L
       unknown->push_back(link.link);
     }
   }
+  find_equal(parts, first_equal_links(robot, geometry));
   return parts;
 }
 

@@ -21,6 +21,8 @@ namespace spherule::internal {
 struct LinkParts {
   std::string link;
   std::size_t index = 0;  // of the link in the description
+  // Of the first part with the same shapes and spheres; the own one where none is before.
+  std::size_t first_equal = 0;
   std::optional<TriangleMesh> mesh;
   double chord_error = 0.0;  // of the mesh, which holds what it stands for; 0 without curved shapes
   std::vector<Sphere> spheres;
