@@ -49,22 +49,19 @@ bool leaves(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, const Vect
 std::size_t reached(const TriangleMesh& mesh, const ExternalSpheres& external) {
   const double rho = external.min_external_diameter / 2.0;
   const std::vector<Sphere>& spheres = external.spheres;
-  std::vector<std::size_t> front;
-  std::vector<bool> seen(spheres.size(), false);
+  std::vector<std::size_t> front, unseen;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    if (!leaves(mesh, external.box, spheres[i].center, rho)) continue;
-    seen[i] = true;
-    front.push_back(i);
+    (leaves(mesh, external.box, spheres[i].center, rho) ? front : unseen).push_back(i);
   }
   for (std::size_t k = 0; k < front.size(); ++k) {
-    const Sphere& here = spheres[front[k]];
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Sphere here = spheres[front[k]];
+    std::erase_if(unseen, [&](std::size_t i) {
       const Sphere& there = spheres[i];
-      if (seen[i] || (there.center - here.center).norm() >= there.radius + here.radius) continue;
-      if (!passes(mesh, here.center, there.center, rho)) continue;
-      seen[i] = true;
+      if ((there.center - here.center).norm() >= there.radius + here.radius) return false;
+      if (!passes(mesh, here.center, there.center, rho)) return false;
       front.push_back(i);
-    }
+      return true;
+    });
   }
   return front.size();
 }

@@ -37,18 +37,37 @@ Real triangle_distance(const Vector3l& p, const std::array<Vector3l, 3>& t) {
   return above ? std::min(best, std::abs(normal.dot(p - t[0])) / normal.norm()) : best;
 }
 
-// By the triangle's bounding box, which takes a tenth of the time of the distance.
-bool surely_further(const Vector3l& p, const std::array<Vector3l, 3>& triangle, Real distance) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
-    if (low - p[axis] > distance || p[axis] - high > distance) return true;
-  }
-  return false;
+// Most comparisons are clear in double: differences, squares and sums of squares of what is given
+// are right but for some 1e-16 of themselves. What is within this share is left to long double.
+constexpr double kClear = 1e-12;
+
+using Triangle = std::array<const Vector3d*, 3>;
+
+Triangle triangle_of(const TriangleMesh& mesh, std::size_t i) {
+  const auto vertex = [&](int k) {
+    return &mesh.vertices[static_cast<std::size_t>(mesh.triangles[i][k])];
+  };
+  return {vertex(0), vertex(1), vertex(2)};
 }
 
-bool is_in_open_sphere(const Vector3l& p, const Sphere& sphere) {
+Real triangle_distance(const Vector3l& p, const Triangle& t) {
+  return triangle_distance(p, std::array{wide(*t[0]), wide(*t[1]), wide(*t[2])});
+}
+
+// To the triangle's bounding box.
+double squared_box_distance(const Vector3d& p, const Triangle& t) {
+  const Vector3d low = t[0]->cwiseMin(*t[1]).cwiseMin(*t[2]);
+  const Vector3d high = t[0]->cwiseMax(*t[1]).cwiseMax(*t[2]);
+  return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();
+}
+
+bool is_in_open_sphere(const Vector3d& p, const Sphere& sphere) {
+  const double squared_distance = (p - sphere.center).squaredNorm();
+  const double squared_radius = sphere.radius * sphere.radius;
+  if (squared_distance > squared_radius * (1.0 + kClear)) return false;
+  if (squared_distance < squared_radius * (1.0 - kClear)) return true;
   const Real radius = sphere.radius;
-  return (p - wide(sphere.center)).squaredNorm() < radius * radius;
+  return (wide(p) - wide(sphere.center)).squaredNorm() < radius * radius;
 }
 
 // Points on the way from a point of the sphere to its centre are tried at these shares of the
@@ -64,17 +83,33 @@ Real judged_distance(const Vector3d& a, const Vector3d& b) {
 Real gap_to_spheres(const Vector3d& p, std::span<const Sphere> spheres) {
   const Vector3l q = wide(p);
   Real gap = std::numeric_limits<Real>::infinity();
-  for (const Sphere& s : spheres) gap = std::min(gap, (q - wide(s.center)).norm() - s.radius);
+  for (const Sphere& s : spheres) {
+    const auto least = static_cast<double>(gap);
+    const double reach = least + s.radius + kClear * (std::abs(least) + s.radius);
+    if (reach > 0.0 && (p - s.center).squaredNorm() > reach * reach * (1.0 + kClear)) continue;
+    gap = std::min(gap, (q - wide(s.center)).norm() - s.radius);
+  }
   return gap;
 }
 
 Real judged_mesh_distance(const Vector3d& p, const TriangleMesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  if (count == 0) return std::numeric_limits<Real>::infinity();
+  // The one whose box is nearest comes first: few of the others are then not clearly further.
+  std::size_t first = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double squared_distance = squared_box_distance(p, triangle_of(mesh, i));
+    if (squared_distance >= nearest) continue;
+    nearest = squared_distance;
+    first = i;
+  }
   const Vector3l q = wide(p);
-  Real best = std::numeric_limits<Real>::infinity();
-  for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto vertex = [&](int k) { return wide(mesh.vertices[static_cast<std::size_t>(t[k])]); };
-    const std::array<Vector3l, 3> triangle{vertex(0), vertex(1), vertex(2)};
-    if (surely_further(q, triangle, best)) continue;
+  Real best = triangle_distance(q, triangle_of(mesh, first));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Triangle triangle = triangle_of(mesh, i);
+    const auto reach = static_cast<double>(best);
+    if (squared_box_distance(p, triangle) > reach * reach * (1.0 + kClear)) continue;
     best = std::min(best, triangle_distance(q, triangle));
   }
   return best;
@@ -82,9 +117,8 @@ Real judged_mesh_distance(const Vector3d& p, const TriangleMesh& mesh) {
 
 bool is_in_solid(const Vector3d& p, const ExternalSpheres& external) {
   if (!external.box.contains(p)) return false;
-  const Vector3l q = wide(p);
   return std::ranges::none_of(external.spheres,
-                              [&](const Sphere& s) { return is_in_open_sphere(q, s); });
+                              [&](const Sphere& s) { return is_in_open_sphere(p, s); });
 }
 
 std::vector<Vector3d> points_on_surface(const TriangleMesh& mesh, std::size_t count,

@@ -13,8 +13,9 @@ using Eigen::Vector3d;
 using Real = long double;
 
 // A difference of a corner and a centre, its square, the sum of three of them and the square of a
-// radius are off by at most 8 x 2^-64 of themselves together.
-constexpr Real kSlack = 0x1p-58L;
+// radius are off by at most 8 roundings of themselves together: 2^-64 each, or 2^-53 in double.
+template <class Number>
+constexpr Number kSlack = Number(sizeof(Number) == sizeof(double) ? 0x1p-47L : 0x1p-58L);
 
 struct Cube {
   std::array<Real, 3> low;
@@ -35,28 +36,38 @@ bool clip(Cube& cube, const Eigen::AlignedBox3d& box) {
 enum class Relation { kApart, kIntersects, kInside };
 
 // How a cube lies to a sphere: surely apart from the closed one, surely inside of the open one, or
-// neither.
+// neither. Its corners are numbers of that kind.
+template <class Number>
 Relation relation(const Cube& cube, const Sphere& sphere) {
-  Real nearest = 0.0L;
-  Real furthest = 0.0L;
+  Number nearest = 0;
+  Number furthest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Real c = sphere.center[static_cast<Eigen::Index>(k)];
-    const Real below = cube.low[k] - c;
-    const Real above = cube.high[k] - c;
-    const Real near = std::max({below, -above, 0.0L});
-    const Real far = std::max(std::abs(below), std::abs(above));
+    const Number c = sphere.center[static_cast<Eigen::Index>(k)];
+    const Number below = static_cast<Number>(cube.low[k]) - c;
+    const Number above = static_cast<Number>(cube.high[k]) - c;
+    const Number near = std::max({below, -above, Number(0)});
+    const Number far = std::max(std::abs(below), std::abs(above));
     nearest += near * near;
     furthest += far * far;
   }
-  const Real radius = sphere.radius;
-  if (furthest * (1.0L + kSlack) < radius * radius) return Relation::kInside;
-  return nearest * (1.0L - kSlack) > radius * radius ? Relation::kApart : Relation::kIntersects;
+  const Number radius = sphere.radius;
+  if (furthest * (1 + kSlack<Number>) < radius * radius) return Relation::kInside;
+  return nearest * (1 - kSlack<Number>) > radius * radius ? Relation::kApart
+                                                          : Relation::kIntersects;
+}
+
+bool is_in_double(const Cube& cube) {
+  const auto is_double = [](Real x) { return static_cast<double>(x) == x; };
+  return std::ranges::all_of(cube.low, is_double) && std::ranges::all_of(cube.high, is_double);
 }
 
 // The spheres that meet the cube; true if one of them holds it.
 bool select(const Cube& cube, std::span<const Sphere> from, std::vector<Sphere>& meeting) {
+  const bool in_double = is_in_double(cube);
   for (const Sphere& sphere : from) {
-    const Relation found = relation(cube, sphere);
+    // Nearly all are told apart, or found to hold it, by fewer digits.
+    Relation found = in_double ? relation<double>(cube, sphere) : Relation::kIntersects;
+    if (found == Relation::kIntersects) found = relation<Real>(cube, sphere);
     if (found == Relation::kInside) return true;
     if (found == Relation::kIntersects) meeting.push_back(sphere);
   }
@@ -105,7 +116,7 @@ class Prover {
                       std::span<const Sphere> holding) {
     const Cube point{{p.x(), p.y(), p.z()}, {p.x(), p.y(), p.z()}};
     const auto is_apart = [&](const Sphere& sphere) {
-      return relation(point, sphere) == Relation::kApart;
+      return relation<Real>(point, sphere) == Relation::kApart;
     };
     return std::ranges::all_of(outside, is_apart) && std::ranges::all_of(holding, is_apart);
   }
