@@ -83,12 +83,12 @@ TEST(ZoneReach, ASlotIsOpenInTheZoneAndClosedOutsideOfIt) {
 }
 
 TEST(ZoneReach, AGapNarrowerThanTheZonesDiameterStaysClosed) {
-  const std::vector<Zone> zones = {box_zone({-5, -5, -5}, {13, 13, 7}, kNarrow)};
+  const std::vector<Zone> zones = {box_zone({-3, -3, -3}, {7, 7, 5}, kNarrow)};
   for (const double gap : effort(std::vector{0.999, 0.5, 0.9}, 2)) {
     for (const double step : kSteps) {
-      const ExternalSpheres external = placed(two_plates(gap, 8.0), zones, step);
-      EXPECT_TRUE(is_in_solid({1.0, 4.0, gap / 2.0}, external)) << gap;
-      EXPECT_TRUE(is_in_solid({4.0, 4.0, gap / 2.0}, external)) << gap;
+      const ExternalSpheres external = placed(two_plates(gap, 4.0), zones, step);
+      EXPECT_TRUE(is_in_solid({1.0, 2.0, gap / 2.0}, external)) << gap;
+      EXPECT_TRUE(is_in_solid({2.0, 2.0, gap / 2.0}, external)) << gap;
     }
   }
 }
@@ -96,22 +96,24 @@ TEST(ZoneReach, AGapNarrowerThanTheZonesDiameterStaysClosed) {
 // A chamber behind a throat: the zone round the chamber alone does not open the throat, nor does
 // one that ends within it; neither do two zones between which a piece of the throat is left.
 TEST(ZoneReach, TheWholeWayInHasToBeWideEnough) {
-  TriangleMesh mesh = joined(two_plates(1.9), box_mesh({0, 0, -1}, {20, 0.5, 2.9}));
-  mesh = joined(mesh, box_mesh({0, 19.5, -1}, {20, 20, 2.9}));
-  mesh = joined(mesh, box_mesh({19.5, 0, -1}, {20, 20, 2.9}));
-  const Vector3d far(16.0, 10.0, 0.95);
+  // 11 long and 3 wide inside, open where x is 0.
+  TriangleMesh mesh = joined(box_mesh({0, 0, -1}, {12, 4, 0}), box_mesh({0, 0, 1.9}, {12, 4, 2.9}));
+  mesh = joined(mesh, box_mesh({0, 0, -1}, {12, 0.5, 2.9}));
+  mesh = joined(mesh, box_mesh({0, 3.5, -1}, {12, 4, 2.9}));
+  mesh = joined(mesh, box_mesh({11.5, 0, -1}, {12, 4, 2.9}));
+  const Vector3d far(9.5, 2.0, 0.95);
   const auto is_open = [&](const std::vector<Zone>& zones) {
     return !is_in_solid(far, placed(mesh, zones));
   };
   const Vector3d low(-2, -2, -2);
-  const Vector3d high(22, 22, 4);
+  const Vector3d high(14, 6, 4);
   EXPECT_TRUE(is_open({box_zone(low, high, kNarrow)}));
-  EXPECT_FALSE(is_open({box_zone({10, -2, -2}, high, kNarrow)}));
+  EXPECT_FALSE(is_open({box_zone({6, -2, -2}, high, kNarrow)}));
   if (kSanitized) return;  // each takes seconds there
-  EXPECT_FALSE(is_open({box_zone(low, {10, 22, 4}, kNarrow)}));
+  EXPECT_FALSE(is_open({box_zone(low, {6, 6, 4}, kNarrow)}));
   EXPECT_FALSE(
-      is_open({box_zone(low, {9, 22, 4}, kNarrow), box_zone({9.05, -2, -2}, high, kNarrow)}));
-  EXPECT_TRUE(is_open({box_zone(low, {10, 22, 4}, kNarrow), box_zone({8, -2, -2}, high, kNarrow)}));
+      is_open({box_zone(low, {5, 6, 4}, kNarrow), box_zone({5.05, -2, -2}, high, kNarrow)}));
+  EXPECT_TRUE(is_open({box_zone(low, {6, 6, 4}, kNarrow), box_zone({4, -2, -2}, high, kNarrow)}));
 }
 
 TEST(ZoneReach, TheSlackHoldsInZonesAndAcrossTheirBorders) {
@@ -123,15 +125,15 @@ TEST(ZoneReach, TheSlackHoldsInZonesAndAcrossTheirBorders) {
       const auto shifted = [&](const TriangleMesh& mesh) {
         return joined(mesh, box_mesh({0, 0, -2.0 - shift}, {0.1, 0.1, -1.0}));
       };
-      const std::vector<Zone> all = {box_zone({-9, -9, -9}, {19, 19, 13}, kNarrow)};
+      const std::vector<Zone> all = {box_zone({-3, -3, -3}, {7, 7, 5}, kNarrow)};
       const double narrow = kNarrow + zone_slack * 1.0001;
       EXPECT_FALSE(
-          is_in_solid({5, 5, narrow / 2.0}, placed(shifted(two_plates(narrow, 10)), all, step)));
-      const std::vector<Zone> middle = {box_zone({3.5, -9, -9}, {6.5, 19, 13}, kNarrow)};
+          is_in_solid({2, 2, narrow / 2.0}, placed(shifted(two_plates(narrow, 4)), all, step)));
+      const std::vector<Zone> middle = {box_zone({2.5, -3, -3}, {4.5, 7, 7}, kNarrow)};
       const double wide = kWide + slack * 1.0001;
-      const ExternalSpheres external = placed(shifted(two_plates(wide, 10)), middle, step);
-      for (const double x : {1.0, 3.5, 5.0, 6.5, 9.0}) {
-        EXPECT_FALSE(is_in_solid({x, 5, wide / 2.0}, external)) << x;
+      const ExternalSpheres external = placed(shifted(two_plates(wide, 7)), middle, step);
+      for (const double x : {1.0, 2.5, 3.5, 4.5, 6.0}) {
+        EXPECT_FALSE(is_in_solid({x, 3.5, wide / 2.0}, external)) << x;
       }
     }
   }
