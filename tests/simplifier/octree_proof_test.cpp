@@ -94,7 +94,7 @@ TEST(OctreeProof, AgreesWithTheCertificateOnSpoiltCovers) {
       std::vector<Sphere> spheres = fitted.cover.spheres;
       for (Sphere& s : spheres) s.radius -= random.between(0.0, share) * fitted.max_error;
       const Certificate certificate = certificate_of(named.mesh, fitted, spheres);
-      const OctreeProof proof = prove_by_octree(fitted.external, spheres, 20, 300'000);
+      const OctreeProof proof = prove_by_octree(fitted.external, spheres, 20, 60'000);
       if (proof.verdict == OctreeVerdict::kLeak) {
         ++leaks;
         ASSERT_FALSE(certificate.covered);
