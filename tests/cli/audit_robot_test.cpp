@@ -15,9 +15,9 @@ using nlohmann::json;
 
 // Bars: without external spheres what is inside is found by a flood, which is quick there.
 constexpr const char* kRobot = R"(<robot name="two"><link name="base">
-  <visual><geometry><box size="0.15 0.004 0.004"/></geometry></visual>
-  <collision><geometry><box size="0.2 0.006 0.006"/></geometry></collision></link>
-<link name="arm"><collision><geometry><box size="0.08 0.003 0.003"/></geometry></collision></link>
+  <visual><geometry><box size="0.15 0.001 0.001"/></geometry></visual>
+  <collision><geometry><box size="0.2 0.001 0.001"/></geometry></collision></link>
+<link name="arm"><collision><geometry><box size="0.08 0.0005 0.0005"/></geometry></collision></link>
 <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
   <origin xyz="0.3 0 0"/><axis xyz="0 0 1"/><limit lower="-4" upper="4" effort="1" velocity="1"/>
 </joint></robot>)";
@@ -65,7 +65,7 @@ TEST_F(AuditRobotCommand, Json) {
   EXPECT_EQ(report.at("unknown_links"), json({"ghost"}));
   const json& base = report.at("links").at(0);
   EXPECT_EQ(base.at("sphere_count"), 1);
-  const double depth = std::sqrt(0.01 + 2 * 0.000009) - 0.09;
+  const double depth = std::sqrt(0.01 + 2 * 0.00000025) - 0.09;
   EXPECT_LE(base.at("certificate").at("uncovered_depth_surface").at(0), depth + 1e-9);
   EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
   EXPECT_EQ(base.at("warnings"), json::array());
@@ -92,7 +92,7 @@ TEST_F(AuditRobotCommand, TableSaysWhatWasLeftOut) {
   EXPECT_NE(shapes.out.find("left out: 1 collision shapes"), table.npos) << shapes.out;
 }
 
-// A leak of 10.1 mm in the first link, none in the second; the last row is of both.
+// A leak of 10.0 mm in the first link, none in the second; the last row is of both.
 TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
   write("leaks.yml", spheres(0.09, 0.05));
   const std::string table = run({"audit-robot", "two.urdf", "leaks.yml"}).out;
@@ -103,11 +103,11 @@ TEST_F(AuditRobotCommand, TheLastRowIsOfAllLinks) {
   row >> spheres >> leak >> to >> upper;
   std::getline(row, rest);
   EXPECT_EQ(spheres, "2");
-  EXPECT_EQ(leak + to, "10.1to");
+  EXPECT_EQ(leak + to, "10.0to");
   EXPECT_EQ(rest.substr(rest.find_last_of(' ')), " NO");
 }
 
-// The half edges of the base are 100, 3 and 3 mm, its sphere of 90 mm is about the middle.
+// The half edges of the base are 100, 0.5 and 0.5 mm, its sphere of 90 mm is about the middle.
 TEST_F(AuditRobotCommand, TheTextSaysWhereLinksLeak) {
   write("leaks.yml", spheres(0.09, 0.05));
   const std::string text = run({"audit-robot", "two.urdf", "leaks.yml"}).out;
@@ -119,8 +119,8 @@ TEST_F(AuditRobotCommand, TheTextSaysWhereLinksLeak) {
   row >> link >> x >> y >> z;
   EXPECT_EQ(link, "base");
   EXPECT_NEAR(std::abs(std::stod(x.substr(1))), 100.0, 0.1) << text;
-  EXPECT_NEAR(std::abs(std::stod(y)), 2.9, 0.2) << text;
-  EXPECT_NEAR(std::abs(std::stod(z)), 2.9, 0.2) << text;
+  EXPECT_NEAR(std::abs(std::stod(y)), 0.5, 0.1) << text;
+  EXPECT_NEAR(std::abs(std::stod(z)), 0.5, 0.1) << text;
   row >> link;
   EXPECT_EQ(link, "next:") << "the arm does not leak: " << text;
   for (std::istringstream lines(text); std::getline(lines, link);) {
@@ -204,7 +204,7 @@ TEST_F(AuditRobotCommand, WhatIsOfferedRepeatsTheOptions) {
 TEST_F(AuditRobotCommand, WhatIsOfferedForOneMeshWorks) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   write("one.urdf", R"(<robot name="one"><link name="flange"/><link name="tool">
-    <collision><geometry><box size="0.2 0.02 0.02"/></geometry></collision></link>
+    <collision><geometry><box size="0.2 0.002 0.002"/></geometry></collision></link>
     <joint name="fix" type="fixed"><parent link="flange"/><child link="tool"/></joint></robot>)");
   write("leaks.json", R"([{"spheres": [{"origin": [0, 0, 0], "radius": 0.09}]}])");
   const Outcome leaks = run({"audit-robot", "one.urdf", "leaks.json", "--max-error", "0.03"});

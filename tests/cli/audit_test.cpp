@@ -14,12 +14,12 @@ class AuditTest : public CommandTest {
     CommandTest::SetUp();
     write_box("box.stl", {2, 2, 2});
     // What is inside is found by a flood whose cells are a share of the diagonal: quick in a bar.
-    write_box("bar.stl", {2, 0.1, 0.1});
+    write_box("bar.stl", {2, 0.01, 0.01});
   }
 };
 
 TEST_F(AuditTest, ForeignSpheresThatCover) {
-  write_spheres("ball.json", {{1, 0.05, 0.05, 1.03}});  // the corners are at 1.0025
+  write_spheres("ball.json", {{1, 0.005, 0.005, 1.03}});  // the corners are at 1.000025
   const Outcome result = run({"audit", "bar.stl", "ball.json", "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const json certificate = json::parse(result.out);
@@ -31,20 +31,20 @@ TEST_F(AuditTest, ForeignSpheresThatCover) {
 }
 
 TEST_F(AuditTest, ForeignSpheresThatLeak) {
-  write_spheres("ball.json", {{1, 0.05, 0.05, 0.9}});
+  write_spheres("ball.json", {{1, 0.005, 0.005, 0.9}});
   const Outcome result = run({"audit", "bar.stl", "ball.json", "--json"});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   const json certificate = json::parse(result.out);
   EXPECT_EQ(certificate.at("covered"), false);
-  const double depth = std::sqrt(1.005) - 0.9;
+  const double depth = std::sqrt(1.00005) - 0.9;
   EXPECT_LE(certificate.at("uncovered_depth").at(0), depth * (1 + 1e-9));
   EXPECT_GE(certificate.at("uncovered_depth").at(1), depth * (1 - 1e-9));
   EXPECT_NEAR(certificate.at("uncovered_depth").at(0), depth, 0.001);
   // The witness is near one of the corners.
   std::size_t axis = 0;
-  for (const double half : {1.0, 0.05, 0.05}) {
+  for (const double half : {1.0, 0.005, 0.005}) {
     const double x = certificate.at("deepest_leak").at(axis++);
-    EXPECT_NEAR(std::abs(x - half), half, 0.01);
+    EXPECT_NEAR(std::abs(x - half), half, 0.003);
   }
   const Outcome text = run({"audit", "bar.stl", "ball.json"});
   EXPECT_EQ(text.exit_code, 1);
@@ -67,7 +67,7 @@ TEST_F(AuditTest, MinExternalChoosesTheSolid) {
 }
 
 TEST_F(AuditTest, ScaleOverrides) {
-  write_spheres("ball.json", {{0.1, 0.005, 0.005, 0.103}});
+  write_spheres("ball.json", {{0.1, 0.0005, 0.0005, 0.103}});
   EXPECT_EQ(run({"audit", "bar.stl", "ball.json"}).exit_code, 1);
   EXPECT_EQ(run({"audit", "bar.stl", "ball.json", "--scale", "0.1"}).exit_code, 0);
 }
@@ -126,7 +126,7 @@ TEST_F(AuditTest, BadOptionsInTheFileAreRefusedWithItsName) {
 TEST_F(AuditTest, OptionsOfReadingMayBeWholeNumbers) {
   const auto exit_code_with = [&](const std::string& options) {
     write("whole.json", R"({"format":"spherule-spheres","version":1,)"
-                        R"("spheres":[{"center":[1,0.05,0.05],"radius":1.03}],"options":{)" +
+                        R"("spheres":[{"center":[1,0.005,0.005],"radius":1.03}],"options":{)" +
                             options + "}}");
     const Outcome result = run({"audit", "bar.stl", "whole.json"});
     EXPECT_EQ(result.err, "");

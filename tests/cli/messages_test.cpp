@@ -271,7 +271,7 @@ TEST_F(MessagesTest, StandardOutputHasNoControlCharacters) {
   check.push_back("--json");
   EXPECT_EQ(nlohmann::json::parse(shown(check, "wa\\u009bll\\u007f"))["pairs"][0]["second"],
             "wa\xc2\x9bll\x7f");
-  shown({"audit-robot", "arm.urdf", "arm.json"}, "\nha\\nnd ");
+  shown({"audit-robot", "arm.urdf", "arm.json", "--max-error", "0.1"}, "\nha\\nnd ");
   write("arm.srdf", R"(<robot name="r&#27;"><disable_collisions link1="base" link2="ha&#10;nd"/>
     <disable_collisions link1="a&#27;" link2="b"/></robot>)");
   shown({"info", "arm.srdf"}, "SRDF of robot: r\\x1b\n");

@@ -26,7 +26,7 @@ class XacroCommand : public CommandTest {
     write("arm.urdf.xacro",
           "<robot name=\"raw\"><xacro:arm/>\n"
           "made: <robot name=\"arm\"><link name=\"base\"><collision><geometry>"
-          "<box size=\"1 1 1\"/></geometry></collision></link></robot>\n</robot>\n");
+          "<box size=\"1 0.01 0.01\"/></geometry></collision></link></robot>\n</robot>\n");
   }
   void TearDown() override {
     ::setenv("PATH", path_.c_str(), 1);

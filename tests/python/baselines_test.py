@@ -13,8 +13,8 @@ import spherule
 baselines = pytest.importorskip("spherule.baselines")
 
 
-def covers(spheres, seed=1):
-    samples = np.random.default_rng(seed).uniform(0, 1, (2000, 3))
+def covers(spheres, size=(1, 1, 1), seed=1):
+    samples = np.random.default_rng(seed).uniform(0, size, (2000, 3))
     gaps = np.linalg.norm(samples[:, None] - spheres[None, :, :3], axis=2) - spheres[:, 3]
     return bool(np.all(gaps.min(axis=1) <= 0))
 
@@ -31,9 +31,14 @@ def test_others_are_made_to(cube):
     filled = baselines.level_set_packing(cube, step=0.05, max_spheres=50)
     assert filled.shape[1] == 4 and not covers(filled)
     medial = baselines.medial_axis(cube, spheres=20, reduction="merge")
-    levels = baselines.hubbard_spheres(cube, counts=[1, 8])
-    assert 0 < len(medial) <= 20 and [len(level) for level in levels] == [1, 8]
-    assert covers(baselines.made_conservative(cube, levels[1]))
+    assert 0 < len(medial) <= 20
+    # What is inside of a bar is found in less time.
+    size = (1, 0.02, 0.02)
+    bar = spherule.TriangleMesh(cube.vertices * size, cube.triangles)
+    levels = baselines.hubbard_spheres(bar, counts=[1, 8])
+    assert [len(level) for level in levels] == [1, 8]
+    assert not covers(levels[1] * (1, 1, 1, 0.5), size)
+    assert covers(baselines.made_conservative(bar, levels[1] * (1, 1, 1, 0.5)), size)
 
 
 def test_meshes(cube):

@@ -32,6 +32,7 @@ def test_reads_what_it_wrote(tmp_path, cube):
 def test_takes_what_has_vertices_and_faces(cube):
     lookalike = SimpleNamespace(vertices=cube.vertices.tolist(), faces=cube.faces.astype(np.int64))
     assert spherule.mesh_report(lookalike).triangles == 12
+    lookalike.vertices = (cube.vertices * (1, 0.02, 0.02)).tolist()  # the inside of a bar is found quickly
     assert not spherule.certify(lookalike, np.zeros((0, 4)), volume=False).covered
 
 

@@ -42,12 +42,12 @@ TEST(MadeConservative, LeavesWhatCovers) {
 }
 
 TEST(MadeConservative, CountsPaddingAndVertexError) {
-  const std::vector<Sphere> spheres = {{kMiddle, kToCorner + 0.05}};
+  const std::vector<Sphere> spheres = {{kMiddle, kToCorner + 0.04}};
   TriangleMesh mesh = kBar;
-  mesh.vertex_error = 0.5;
-  const ConservativeSpheres result = made_conservative(mesh, spheres, 0.5);
+  mesh.vertex_error = 0.05;
+  const ConservativeSpheres result = made_conservative(mesh, spheres, 0.05);
   EXPECT_TRUE(result.certificate.covered);
-  EXPECT_GE(result.spheres[0].radius, kToCorner + 1.0);
+  EXPECT_GE(result.spheres[0].radius, kToCorner + 0.1);
 }
 
 TEST(MadeConservative, CoversMeshesOfEveryKindFromRandomSpheres) {
