@@ -56,6 +56,7 @@ class ViewBrowserTest : public CommandTest {
     if (browser_.empty()) GTEST_SKIP() << "no chromium to open the page with";
   }
 
+  // Compositing on an emulated graphics processor would take half the time of a start.
   Shown show(const std::string& page, const std::string& state) {
     const std::string folder = folder_.string();
     const std::string command = "cd '" + folder + "' && HOME='" + folder + "' timeout 120 " +
@@ -66,7 +67,7 @@ class ViewBrowserTest : public CommandTest {
                                 folder + "/.profile'" + " --window-size=" + std::to_string(kWidth) +
                                 "," + std::to_string(kHeight) +
                                 " --virtual-time-budget=3000 --screenshot=shot.png --dump-dom"
-                                " 'file://" +
+                                " --disable-gpu-compositing 'file://" +
                                 folder + "/" + page + "#" + state + "' > dom.html 2> browser.log";
     EXPECT_EQ(std::system(command.c_str()), 0) << read("browser.log");
     Shown shown{.picture = {}, .dom = without_scripts(read("dom.html"))};
