@@ -292,17 +292,18 @@ TEST_F(SceneFormats, GltfSkinsAndMorphTargetsArePlacedAsTheFileSays) {
 
 TEST_F(SceneFormats, GltfNodesMayBeDeep) {
   std::string nodes = "\"nodes\":[";
+  std::string moved = nodes;
   constexpr int kDepth = 20000;
-  for (int i = 0; i < kDepth; ++i) nodes += "{\"children\":[" + std::to_string(i + 1) + "]},";
+  for (int i = 0; i < kDepth; ++i) {
+    const std::string child = "\"children\":[" + std::to_string(i + 1) + "]},";
+    nodes += "{" + child;
+    moved += "{\"translation\":[1,0,0]," + child;
+  }
   const std::string good = test::gltf_text(cube_, Vector3d::Zero());
   const std::size_t begin = good.find("\"nodes\":[{"), end = good.find("\"meshes\"");
   EXPECT_EQ(read("gltf", good.substr(0, begin) + nodes + "{\"mesh\":0}]," + good.substr(end))
                 .triangles.size(),
             12u);
-  std::string moved = nodes;
-  for (std::size_t at = 0; (at = moved.find("{\"ch", at)) != std::string::npos; at += 4) {
-    moved.insert(at + 1, "\"translation\":[1,0,0],");
-  }
   EXPECT_TRUE(refused("gltf", good.substr(0, begin) + moved + "{\"mesh\":0}]," + good.substr(end),
                       "512 transforms"));
 }
