@@ -93,6 +93,9 @@ bool pierces(const Vector<Number>& p, const Vector<Number>& q, const ExactTriang
 // Two triangles that touch not are nearest at a corner of one of them or within two edges.
 template <class Number>
 Number squared_distance(const ExactTriangle<Number>& a, const ExactTriangle<Number>& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return 0;
+  }
   Number least = squared_distance_to_triangle(a[0], b);
   const auto take = [&](const Number& other) {
     if (other < least) least = other;
@@ -100,7 +103,6 @@ Number squared_distance(const ExactTriangle<Number>& a, const ExactTriangle<Numb
   for (std::size_t i = 0; i < 3; ++i) {
     take(squared_distance_to_triangle(a[i], b));
     take(squared_distance_to_triangle(b[i], a));
-    if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return 0;
     const Vector<Number> along_a = difference(a[(i + 1) % 3], a[i]);
     for (std::size_t j = 0; j < 3; ++j) {
       const Vector<Number> along_b = difference(b[(j + 1) % 3], b[j]);

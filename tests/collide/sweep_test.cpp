@@ -22,7 +22,7 @@ TEST(Sweep, IsTrueAtThousandsOfInstants) {
   SceneRandom random(1);
   int counts[3] = {};
   int proved_near = 0;
-  for (int i = 0; i < effort(400, 25); ++i) {
+  for (int i = 0; i < effort(200, 25); ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
     const Body a = random_body(random, size);
     const Body b = random_body(random, size);
@@ -40,9 +40,9 @@ TEST(Sweep, IsTrueAtThousandsOfInstants) {
     }
     expect_same(result, run(b, a));
   }
-  EXPECT_GT(counts[static_cast<int>(Verdict::kFree)], effort(60, 3));
-  EXPECT_GT(counts[static_cast<int>(Verdict::kCollision)], effort(100, 6));
-  EXPECT_GT(proved_near, effort(5, 0));
+  EXPECT_GT(counts[static_cast<int>(Verdict::kFree)], effort(30, 3));
+  EXPECT_GT(counts[static_cast<int>(Verdict::kCollision)], effort(50, 6));
+  EXPECT_GT(proved_near, effort(2, 0));
 }
 
 // Motions that are shifted to pass at a chosen gap, on either side of nothing.
@@ -50,7 +50,7 @@ TEST(Sweep, IsTrueNextToContact) {
   SceneRandom random(2);
   int free = 0;
   int not_free = 0;
-  for (int i = 0; i < effort(120, 8); ++i) {
+  for (int i = 0; i < effort(60, 8); ++i) {
     const std::vector<Sphere> spheres = random_spheres(random, 6, 1.0, 0.3);
     const Pose start = random.pose(1.0);
     const Vector3d axis = random.point(1.0);
@@ -94,8 +94,8 @@ TEST(Sweep, IsTrueNextToContact) {
     expect_true(mover, still_body({{center, room - 1e-3}}),
                 run(mover, still_body({{center, room - 1e-3}})), 2000);
   }
-  EXPECT_GT(free, effort(100, 6));
-  EXPECT_GT(not_free, effort(200, 12));
+  EXPECT_GT(free, effort(50, 6));
+  EXPECT_GT(not_free, effort(100, 12));
 }
 
 TEST(Sweep, KeepsAClearance) {

@@ -130,7 +130,7 @@ TEST(Sweep, StartsOrEndsInContact) {
 
 TEST(Sweep, TouchingForAnInstantIsContact) {
   SceneRandom random(5);
-  for (int i = 0; i < effort(400, 20); ++i) {
+  for (int i = 0; i < effort(150, 20); ++i) {
     // A sphere passes another whose surface it touches at exactly one instant; the numbers are
     // exact.
     const double when = random.uniform(0.0, 1.0);

@@ -65,7 +65,7 @@ FittedModel fit_model(const std::string& name, const TriangleMesh& mesh, double 
   SimplifyOptions options;
   options.max_error = error;
   options.min_external_diameter = 4.0 * error;
-  options.effort = test::effort(2, 0);
+  options.effort = test::effort(1, 0);
   const Simplification fit = simplify(mesh, options);
   const std::string broken = broken_promises(fit);
   if (!broken.empty()) throw std::runtime_error(name + ": " + broken);

@@ -29,7 +29,7 @@ using test::FittedModel;
 
 // A relative error that FCL's own distance may have.
 constexpr double kFclDistanceError = 1e-9;
-constexpr std::size_t kDefaultPoses = test::effort(200000, 800);
+constexpr std::size_t kDefaultPoses = test::effort(100000, 800);
 
 // Poses of all pairs of the plain shapes together; SPHERULE_TEST_POSES sets another number.
 std::size_t total_poses() {

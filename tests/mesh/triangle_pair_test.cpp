@@ -201,7 +201,7 @@ TEST(TrianglePair, TinyOnesAreNotTakenForApart) {
 TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
   SceneRandom random(11);
   int deep = 0, tight = 0;
-  for (int i = 0; i < effort(800, 33); ++i) {
+  for (int i = 0; i < effort(400, 33); ++i) {
     const Triangle a = random.whole(0, 2) == 0 ? needle(random, 0.1) : random_triangle(random);
     Triangle b = random_triangle(random);
     if (random.whole(0, 1) == 0) b = brought(b, point_of(b, random), point_of(a, random), random);
@@ -226,8 +226,8 @@ TEST(TrianglePair, KeepsTouchingUpToItsDepth) {
     }
     tight += parted;
   }
-  EXPECT_GT(deep, effort(100, 4));
-  EXPECT_GT(tight, effort(50, 2));
+  EXPECT_GT(deep, effort(50, 4));
+  EXPECT_GT(tight, effort(25, 2));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <string>
 #include <utility>
@@ -74,6 +75,11 @@ TEST(ObstacleChecker, ClearancesAreThoseOfTheExactQueries) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
     ObstacleOptions options{.world_from_root = random_root(random, 3.0)};
+    std::deque<ObstacleChecker> checkers;
+    for (const InstructionSet set : instruction_sets()) {
+      options.instructions = set;
+      checkers.emplace_back(robot, obstacles, options);
+    }
     for (int k = 0; k < 10; ++k) {
       const std::vector<double> configuration =
           random_configuration(random, robot, k == 0 ? 300.0 : 3.2);
@@ -103,9 +109,7 @@ TEST(ObstacleChecker, ClearancesAreThoseOfTheExactQueries) {
           }
         }
       }
-      for (const InstructionSet set : instruction_sets()) {
-        options.instructions = set;
-        const ObstacleChecker checker(robot, obstacles, options);
+      for (const ObstacleChecker& checker : checkers) {
         RobotChecker::Scratch scratch(checker);
         ASSERT_EQ(checker.within(configuration, clearance, scratch), expected)
             << i << ' ' << k << ' ' << lower << ' ' << clearance;
@@ -126,8 +130,10 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoAtContact) {
   SceneRandom random(22);
   int hits = 0;
   int free = 0;
-  for (int i = 0; i < effort(3000, 300); ++i) {
-    const RobotModel robot = random_robot_with_trees(random, 0.3);
+  RobotModel robot = random_robot_with_trees(random, 0.3);
+  for (int i = 0; i < effort(2000, 300); ++i) {
+    // The trees of a robot take more time than its questions.
+    if (i % 5 == 4) robot = random_robot_with_trees(random, 0.3);
     const Pose root = i % 2 == 0 ? Pose() : random_root(random, 1000.0);
     const std::vector<double> configuration = random_configuration(random, robot, 3.2);
     std::vector<Pose> world_from_link;
@@ -149,8 +155,8 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoAtContact) {
     (expect_answer(robot, obstacles, configuration, options) ? hits : free) += 1;
     if (HasFailure()) return;
   }
-  EXPECT_GT(hits, effort(500, 25));
-  EXPECT_GT(free, effort(500, 25));
+  EXPECT_GT(hits, effort(330, 25));
+  EXPECT_GT(free, effort(330, 25));
 }
 
 // Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.

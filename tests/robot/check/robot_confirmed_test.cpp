@@ -202,7 +202,7 @@ TEST(RobotConfirmed, MotionsAreProvedOnTheMeshes) {
   const std::vector<InstructionSet> sets = instruction_sets();
   SceneRandom random(172);
   int free = 0, hits = 0, unknown = 0, alarms = 0;
-  for (int i = 0; i < effort(100, 8); ++i) {
+  for (int i = 0; i < effort(60, 8); ++i) {
     const ConfirmedScene scene(random);
     const RobotChecker checker = scene.checker(sets[random.bits() % sets.size()]);
     const RobotChecker spheres = scene.checker(best_instruction_set(), false);
@@ -242,9 +242,9 @@ TEST(RobotConfirmed, MotionsAreProvedOnTheMeshes) {
                 spheres.check_edge(from, to, sphere_scratch).verdict != Verdict::kFree;
     }
   }
-  EXPECT_GT(free, effort(50, 3));
-  EXPECT_GT(hits, effort(50, 3));
-  EXPECT_GT(alarms, effort(20, 1));
+  EXPECT_GT(free, effort(30, 3));
+  EXPECT_GT(hits, effort(30, 3));
+  EXPECT_GT(alarms, effort(12, 1));
   EXPECT_LT(unknown, 1 + (free + hits) / 20);
 }
 
