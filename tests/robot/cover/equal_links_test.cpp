@@ -85,13 +85,13 @@ TEST(EqualLinks, AreCoveredOnceAndAsAlone) {
     return cover_robot(hand({shape}), {.max_error = max_error, .effort = 0}).links[1].spheres;
   };
   EXPECT_TRUE(cover.links[0].spheres.empty());
-  for (const std::size_t link : {1, 3, 6}) {
+  for (const std::size_t link : {1UL, 3UL, 6UL}) {
     EXPECT_EQ(cover.links[link].spheres, alone(kBar, 0.01)) << link;
     EXPECT_EQ(cover.links[link].link, "finger" + std::to_string(link - 1));
     EXPECT_EQ(cover.links[link].fit->certificate.covered, true);
     EXPECT_EQ(cover.links[link].seconds == 0.0, link != 1) << link;
   }
-  for (const std::size_t link : {2, 4}) {
+  for (const std::size_t link : {2UL, 4UL}) {
     EXPECT_EQ(cover.links[link].spheres, alone(kShortBar, 0.01)) << link;
   }
   EXPECT_EQ(cover.links[5].spheres, alone(kBar, 0.02));
