@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/audit_robot.h"
 
+#include "mesh/geometry/mesh_box.h"
 #include "mesh/geometry/surface_sampling.h"
 #include "robot/cover/internal/link_parts.h"
+#include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
 #include "robot/cover/internal/shapes_in_spheres.h"
 #include "robot/model/kinematics.h"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace spherule {
@@ -164,6 +167,12 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
   if (of_mesh.covered || around.uncovered_depth.lower > 0.0 || part.spheres.empty()) return;
   const auto mesh = link_mesh(
       link, {.geometry = options.geometry, .chord_error = options.max_error * kChordErrorOfError});
+  const std::string fault =
+      internal::size_fault(internal::box_of(*mesh).diagonal().norm(), options.max_error);
+  if (!fault.empty()) {
+    audit.warnings.push_back("it is not judged by a simplified solid: it " + fault);
+    return;
+  }
   const internal::LinkSolid solid(*mesh, {.max_error = options.max_error,
                                           .min_external_diameter = options.min_external_diameter,
                                           .threads = options.threads});

@@ -58,7 +58,8 @@ struct LinkAudit {
   std::optional<Certificate> certificate = std::nullopt;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;
-  // For a person: a D that was chosen larger than 4 E, for the S that is proved to be covered.
+  // For a person: a D that was chosen larger than 4 E, for the S that is proved to be covered; that
+  // a link is more than 10,000 E across, so that S was not examined.
   std::vector<std::string> warnings = {};
 };
 
@@ -91,9 +92,8 @@ struct RobotAudit {
 // spheres, so that a cover that is proved holds for the exact mechanism. Spheres of links that the
 // robot has not got count nowhere.
 // Throws Error: as link_mesh() and forward_kinematics(), for an E or D out of range, for spheres
-// that are not usable (naming the link), a link named twice, a robot without any such geometry, a
-// link more than 10,000 times E across whose surface is covered and not what it encloses, and a
-// configuration that takes a joint's position, a mimic's too, beyond 100.
+// that are not usable (naming the link), a link named twice, a robot without any such geometry, and
+// a configuration that takes a joint's position, a mimic's too, beyond 100.
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                        const RobotAuditOptions& options = {});
 

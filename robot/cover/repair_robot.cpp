@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/repair_robot.h"
 
+#include "mesh/geometry/mesh_box.h"
 #include "robot/cover/internal/link_parts.h"
+#include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
+#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 namespace spherule {
 namespace {
+
+// Before long work is done for nothing. An E that is chosen suits its link.
+void check_sizes(std::span<const internal::LinkParts> parts, double max_error) {
+  if (!(max_error > 0.0)) return;
+  for (const internal::LinkParts& part : parts) {
+    if (!part.mesh) continue;
+    const double across = internal::box_of(*part.mesh).diagonal().norm();
+    const std::string fault = internal::size_fault(across, max_error);
+    if (!fault.empty()) throw Error("link '" + part.link + "'", fault);
+  }
+}
 
 LinkRepair repaired(const internal::LinkParts& part, const RobotRepairOptions& options) {
   const internal::LinkSolid solid(*part.mesh,
@@ -29,6 +44,7 @@ RobotRepair repair_robot(const RobotDescription& robot, std::span<const LinkSphe
   result.spheres.assign(spheres.begin(), spheres.end());
   const std::vector<internal::LinkParts> parts =
       internal::parts_of(robot, spheres, options.geometry, nullptr);
+  check_sizes(parts, options.max_error);
   std::vector<std::size_t> repair_of(parts.size());
   for (const internal::LinkParts& part : parts) {
     internal::report(options.progress, part.index, parts.size(), part.link);

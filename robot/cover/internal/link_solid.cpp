@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/internal/link_solid.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "robot/cover/internal/link_size.h"
-#include "spheretree/error.h"
-
 #include <sstream>
 
 namespace spherule::internal {
-namespace {
-
-SimplifiedSolid solid_of(const TriangleMesh& mesh, const SimplifyOptions& lengths,
-                         std::size_t max_cells) {
-  if (lengths.max_error > 0.0) {
-    const std::string fault = size_fault(box_of(mesh).diagonal().norm(), lengths.max_error);
-    if (!fault.empty()) throw Error("mesh", fault);
-  }
-  return simplified_solid(mesh, lengths, max_cells);
-}
-
-}  // namespace
-
 std::string link_diameter_warning(double min_external_diameter) {
   std::ostringstream text;
   text << "it is so large for its max error that D is " << min_external_diameter
@@ -30,7 +13,7 @@ std::string link_diameter_warning(double min_external_diameter) {
 
 LinkSolid::LinkSolid(const TriangleMesh& mesh, const SimplifyOptions& lengths,
                      std::size_t max_cells)
-    : solid_(solid_of(mesh, lengths, max_cells)) {
+    : solid_(simplified_solid(mesh, lengths, max_cells)) {
   certify_options_ = {.external = &solid_.external,
                       .resolution = proof_resolution(solid_.options.max_error,
                                                      solid_.external.box.diagonal().norm()),

@@ -17,7 +17,7 @@ std::string link_diameter_warning(double min_external_diameter);
 // examined. Not copied: the options refer to it.
 class LinkSolid {
  public:
-  // Throws Error as simplified_solid(), and for a mesh too large for its E (link_size.h).
+  // Throws Error as simplified_solid().
   LinkSolid(const TriangleMesh& mesh, const SimplifyOptions& lengths,
             std::size_t max_cells = ExternalOptions::kMostCells);
   LinkSolid(const LinkSolid&) = delete;

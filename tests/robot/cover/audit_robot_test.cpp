@@ -232,16 +232,38 @@ TEST_F(AuditRobot, RepairCovers) {
 TEST(AuditRobotSizes, NoRepairOfALinkThatIsFarTooLargeForItsError) {
   RobotDescription robot{.name = "hall", .model = RobotModel("wall")};
   const Primitive wall = Box{.size = {40, 30, 20}};
-  robot.links = {{.name = "wall", .collision = {{.name = "", .geometry = wall}}}};
+  const Primitive pin = Box{.size = {0.1, 0.001, 0.001}};
+  robot.links = {{.name = "pin", .collision = {{.name = "", .geometry = pin}}},
+                 {.name = "wall", .collision = {{.name = "", .geometry = wall}}}};
   const std::vector<LinkSpheres> spheres = {{"wall", {{{0, 0, 0}, 1.0}}}};
+  RobotRepairOptions options{.max_error = 0.005};
+  // Before any link is repaired.
+  options.progress = [](double, const char* link) { ADD_FAILURE() << link; };
   try {
-    repair_robot(robot, spheres, {.max_error = 0.005});
+    repair_robot(robot, spheres, options);
     FAIL() << "was accepted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.subject(), "link 'wall', mesh");
+    EXPECT_EQ(error.subject(), "link 'wall'");
     EXPECT_EQ(error.reason().find("is 53.8516 m across, too much for a max error of 0.005 m"), 0U)
         << error.reason();
   }
+}
+
+// The bar is covered with less to spare than certify() sees; for this E no solid is examined. The
+// other link is judged all the same.
+TEST_F(AuditRobot, ALinkThatIsFarTooLargeForItsErrorIsNotProved) {
+  std::vector<LinkSpheres> spheres = {{"base", {}}, {"arm", {{{0, 0, 0}, 0.05}}}};
+  // Each holds one part of the bar, up to x = 0.013.
+  const auto radius = [](double half) { return std::hypot(half, 0.001, 0.001) * (1.0 + 1e-9); };
+  spheres[0].spheres = {{{-0.0435, 0, 0}, radius(0.0565)}, {{0.0565, 0, 0}, radius(0.0435)}};
+  const RobotAudit audit = audit_robot(robot_, spheres, {.max_error = 1e-5});
+  EXPECT_FALSE(audit.links[0].certificate->covered);
+  EXPECT_EQ(audit.links[0].certificate->uncovered_depth.lower, 0.0);
+  ASSERT_EQ(audit.links[0].warnings.size(), 1U);
+  EXPECT_NE(audit.links[0].warnings[0].find("m across, too much for a max error of 1e-05 m"),
+            std::string::npos)
+      << audit.links[0].warnings[0];
+  EXPECT_TRUE(audit.links[1].certificate->covered);
 }
 
 // The limit of the grid's cells in the place of a link that is as large as the usual one needs: a
