@@ -8,6 +8,7 @@
 #include "robot/files/urdf.h"
 #include "tests/support/temp_dir.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -72,6 +73,11 @@ TEST(EqualLinks, EachNumberOfAShapeCounts) {
 TEST(EqualLinks, AreCoveredOnceAndAsAlone) {
   RobotCoverOptions options{.max_error = 0.01, .effort = 0};
   options.links["finger4"].max_error = 0.02;
+  options.links["finger6"].min_external_diameter = 0.05;
+  options.links["finger7"].padding = 0.001;
+  options.links["finger8"].zones = {
+      {.shape = Eigen::AlignedBox3d(Eigen::Vector3d(0, -1, -1), Eigen::Vector3d(1, 1, 1)),
+       .max_error = 0.008}};
   std::mutex mutex;
   std::set<std::string> covered;
   options.progress = [&](double, const char* link) {
@@ -79,8 +85,9 @@ TEST(EqualLinks, AreCoveredOnceAndAsAlone) {
     covered.insert(link);
   };
   const RobotCover cover =
-      cover_robot(hand({kBar, kShortBar, kBar, kShortBar, kBar, kBar}), options);
-  EXPECT_EQ(covered, (std::set<std::string>{"finger0", "finger1", "finger4"}));
+      cover_robot(hand({kBar, kShortBar, kBar, kShortBar, kBar, kBar, kBar, kBar, kBar}), options);
+  EXPECT_EQ(covered, (std::set<std::string>{"finger0", "finger1", "finger4", "finger6", "finger7",
+                                            "finger8"}));
   const auto alone = [](const std::string& shape, double max_error) {
     return cover_robot(hand({shape}), {.max_error = max_error, .effort = 0}).links[1].spheres;
   };
