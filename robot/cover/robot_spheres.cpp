@@ -30,7 +30,7 @@ namespace {
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
 
-// Links that have something to cover, and all the same.
+// What one cover is made for: links with the same shapes, lengths and no zones, or a single one.
 struct Task {
   std::vector<std::size_t> links;  // indices
   TriangleMesh mesh;
@@ -215,7 +215,7 @@ LinkCover cover_link(const std::string& link, const Task& task, double weld) {
   return cover;
 }
 
-// Found without work.
+// The cover of a link with the same shapes; no time went into it.
 LinkCover of_equal_link(LinkCover cover, const std::string& link) {
   cover.link = link;
   cover.seconds = 0.0;
@@ -226,12 +226,9 @@ LinkCover of_equal_link(LinkCover cover, const std::string& link) {
 // Links are covered side by side by some of the threads; the others help within links, which is
 // what is left to do when the last links are long ones.
 struct ThreadShares {
-  explicit ThreadShares(int threads)
-      : all(internal::thread_count(threads)),
-        links((all + 1) / 2),
-        within(static_cast<int>(all - links + 1)) {}
+  ThreadShares(std::size_t all, std::size_t tasks)
+      : links(std::min((all + 1) / 2, tasks)), within(static_cast<int>(all - links + 1)) {}
 
-  std::size_t all;
   std::size_t links;  // at once
   int within;         // threads of simplify(), the link's own and those that all links share
 };
@@ -240,8 +237,9 @@ struct ThreadShares {
 
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options) {
   check_options(robot, options);
-  const ThreadShares threads(options.threads);
-  std::vector<Task> tasks = read_links(robot, options, threads.all);
+  const std::size_t all_threads = internal::thread_count(options.threads);
+  std::vector<Task> tasks = read_links(robot, options, all_threads);
+  const ThreadShares threads(all_threads, tasks.size());
 
   RobotCover result{.robot = robot.name, .links = {}, .options = options};
   for (const LinkDescription& link : robot.links) result.links.push_back({.link = link.name});
