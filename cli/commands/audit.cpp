@@ -179,10 +179,11 @@ Reading reading_of(const AuditArguments& arguments, const SphereFile& file) {
   return {std::move(reading), std::move(found)};
 }
 
-// Before the long work.
+// Before the long work. A max error comes with --repair only; without one nothing is said.
 void warn_of_lengths(const AuditArguments& arguments, const TriangleMesh& mesh,
                      const ModelUnit& unit) {
-  const SimplifyOptions lengths{.max_error = arguments.max_error.value_or(0.0),
+  if (!arguments.max_error) return;
+  const SimplifyOptions lengths{.max_error = *arguments.max_error,
                                 .min_external_diameter = arguments.min_external.value_or(0.0)};
   const MeshReport report = mesh_report(mesh, {.self_intersections = false});
   warn_each(arguments.models.front(), length_warnings(report, lengths, unit));
