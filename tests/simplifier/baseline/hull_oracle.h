@@ -47,7 +47,7 @@ std::array<Number, 2> determinant_and_size(const std::array<Number, 3>& a,
 }
 
 // Sign of the determinant: positive if p lies beyond the triangle's outer side. In long double
-// where that is clear: three roundings a difference and product, and five of the sum, 2^-64 each.
+// where that is clear: five roundings a product of differences, three of the sum, 2^-64 each.
 inline int exact_side(const std::array<Eigen::Vector3d, 3>& t, const Eigen::Vector3d& p) {
   using Rough = std::array<long double, 3>;
   const auto rough = [](const Eigen::Vector3d& v) { return Rough{v.x(), v.y(), v.z()}; };
