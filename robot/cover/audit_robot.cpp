@@ -3,9 +3,11 @@
 
 #include "mesh/geometry/mesh_box.h"
 #include "mesh/geometry/surface_sampling.h"
+#include "mesh/mesh_report.h"
 #include "robot/cover/internal/link_parts.h"
 #include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
+#include "robot/cover/internal/open_mesh.h"
 #include "robot/cover/internal/shapes_in_spheres.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/error.h"
@@ -16,6 +18,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -181,7 +184,16 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
   of_solid.protrusion_over_mesh = of_mesh.protrusion_over_mesh;
   of_solid.volume_ratio = of_mesh.volume_ratio;
   audit.certificate = std::move(of_solid);
-  audit.warnings = solid.warnings();
+  const std::vector<std::string>& warnings = solid.warnings();
+  audit.warnings.insert(audit.warnings.end(), warnings.begin(), warnings.end());
+}
+
+void warn_of_open_mesh(const TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  const MeshReport report = mesh_report(mesh, {.self_intersections = false});
+  if (report.closed) return;
+  warnings.push_back(internal::openness(report) +
+                     ": its surface is judged in any case, but space that its openings lead into "
+                     "counts as outside");
 }
 
 // Before long work is done for nothing.
@@ -220,6 +232,7 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
     }
     LinkAudit audit{.link = part.link, .spheres = part.spheres.size()};
     if (part.mesh) {
+      warn_of_open_mesh(*part.mesh, audit.warnings);
       internal::of_link(part.link,
                         [&] { certify_link(part, robot.links[part.index], options, audit); });
       if (!audit.certificate->covered) {

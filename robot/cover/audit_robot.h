@@ -58,8 +58,8 @@ struct LinkAudit {
   std::optional<Certificate> certificate = std::nullopt;
   // Share of the surface that no sphere holds, estimated from points spread evenly over it.
   double uncovered_share = 0.0;
-  // For a person: a D that was chosen larger than 4 E, for the S that is proved to be covered; that
-  // a link is more than 10,000 E across, so that S was not examined.
+  // For a person: an open mesh; a D that was chosen larger than 4 E, for the S that is proved to be
+  // covered; that a link is more than 10,000 E across, so that S was not examined.
   std::vector<std::string> warnings = {};
 };
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/robot_spheres.h"
 
+#include "mesh/geometry/mesh_box.h"
 #include "mesh/mesh_report.h"
 #include "robot/cover/internal/equal_links.h"
 #include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
+#include "robot/cover/internal/open_mesh.h"
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
 #include "spheretree/error.h"
@@ -162,9 +164,7 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     task.mesh = *link_mesh(link, {.geometry = options.geometry,
                                   .chord_error = kChordErrorOfError * max_error,
                                   .weld = options.weld});
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& v : task.mesh.vertices) box.extend(v);
-    task.across = box.diagonal().norm();
+    task.across = internal::box_of(task.mesh).diagonal().norm();
     const std::string fault = internal::size_fault(task.across, max_error);
     require(fault.empty(), subject_of(link.name), fault);
   });
@@ -183,10 +183,10 @@ std::vector<std::string> warnings_of(const Task& task, const Simplification& fit
   if (!task.doubt.empty()) warnings.push_back(task.doubt);
   if (!report.closed) {
     std::ostringstream text;
-    text << "its mesh is open (" << report.boundary_edges << " edges with one triangle, "
-         << report.non_manifold_edges
-         << " with more than two): the surface is covered in any case, but space that things of "
-            "the size D can get into counts as outside";
+    text
+        << internal::openness(report)
+        << ": the surface is covered in any case, but space that things of the size D can get into "
+           "counts as outside";
     if (report.boundary_edges > 0 && weld == 0.0) {
       text << "; if rounding has left cracks, welding within " << kCrack * task.across
            << " m (--weld) shuts them";

@@ -271,7 +271,7 @@ TEST_F(MessagesTest, StandardOutputHasNoControlCharacters) {
   check.push_back("--json");
   EXPECT_EQ(nlohmann::json::parse(shown(check, "wa\\u009bll\\u007f"))["pairs"][0]["second"],
             "wa\xc2\x9bll\x7f");
-  shown({"audit-robot", "arm.urdf", "arm.json", "--max-error", "0.1"}, "\nha\\nnd ");
+  shown({"audit-robot", "arm.urdf", "arm.json"}, "\nha\\nnd ");
   write("arm.srdf", R"(<robot name="r&#27;"><disable_collisions link1="base" link2="ha&#10;nd"/>
     <disable_collisions link1="a&#27;" link2="b"/></robot>)");
   shown({"info", "arm.srdf"}, "SRDF of robot: r\\x1b\n");
@@ -359,6 +359,17 @@ TEST_F(MessagesTest, OpenMeshesOfLinksAreExplainedOnce) {
   for (const nlohmann::json& link : report.at("links")) {
     EXPECT_TRUE(link.at("warnings").at(0).get<std::string>().starts_with(figures + why));
   }
+  // An audit says it, too, whatever it finds.
+  const std::string sphere = R"(, "spheres": [{"center": [0.05, 0.05, 0], "radius": 0.075}]})";
+  write("sheet.json", R"({"format": "spherule-robot-spheres", "version": 1, "robot": "sheet",
+    "links": [{"link": "base")" +
+                          sphere + R"(, {"link": "tip")" + sphere + "]}");
+  const Outcome audit = run({"audit-robot", "sheet.urdf", "sheet.json", "--geometry", "visual"});
+  EXPECT_EQ(audit.exit_code, 0) << audit.out;
+  EXPECT_TRUE(audit.err.starts_with("spherule: warning: link base: " + figures +
+                                    ": its surface is judged in any case"))
+      << audit.err;
+  EXPECT_TRUE(audit.err.ends_with("\nspherule: warning: link tip: " + figures + "\n")) << audit.err;
 }
 
 }  // namespace

@@ -9,8 +9,9 @@
 
 namespace spherule::internal {
 
-// Of each link the first that has the same shapes, number for number: fingers of a hand, legs of a
-// walking robot. Itself where no link before has them, and of links without such geometry.
+// For each link the index of the first link that has the same shapes, number for number: fingers of
+// a hand, legs of a walking robot. A link's own index where no earlier link has the same shapes, or
+// where it has none.
 std::vector<std::size_t> first_equal_links(const RobotDescription& robot, LinkGeometry geometry);
 
 }  // namespace spherule::internal
