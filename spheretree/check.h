@@ -41,7 +41,8 @@ struct TreeReport {
 
 // Checks all five invariants of SphereTree with outward rounding: `valid` is true only if they hold
 // in exact arithmetic. A sphere that encloses another by less than a few units in the last place
-// may be refused; build_tree never makes one.
+// may be refused; build_tree never makes one. Throws Error only in a thread that does not round to
+// nearest (rounding_mode.h).
 TreeReport check(const SphereTreeData& data);
 TreeReport check(const SphereTree& tree);
 
