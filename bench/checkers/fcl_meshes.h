@@ -7,9 +7,9 @@
 namespace spherule {
 
 // FCL's queries of two meshes, both BVHModel<Volume>: until the first contact, and the distance
-// without its points. In double precision Debian's library answers fcl::collide() and
-// fcl::distance(). It has no single precision: fcl_meshes.cpp instantiates the functions that those
-// two pick for meshes, and not those for every other pair of FCL's shapes.
+// without its points (FCL has none for OBB). In double precision Debian's library answers
+// fcl::collide() and fcl::distance(). It has no single precision: fcl_meshes.cpp instantiates the
+// functions that those two pick for meshes, and not those for every other pair of FCL's shapes.
 template <class Volume>
 bool fcl_meshes_touch(const fcl::CollisionGeometry<typename Volume::S>& a,
                       const fcl::Transform3<typename Volume::S>& world_from_a,
