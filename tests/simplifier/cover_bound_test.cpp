@@ -34,6 +34,11 @@ TEST(CoverBound, IsAboveWhatIsEasyAndNeverAboveACover) {
   EXPECT_GE(static_cast<double>(plate.lower_bound),
             1.0 / (std::numbers::pi * std::pow(max_error + 0.025, 2)));
   EXPECT_LE(plate.lower_bound, plate.spheres.size());
+  // Any cover of a cube needs a sphere for each of the eight corners: they are 4 E apart, and a
+  // sphere reaches 2.83 E along an edge.
+  const SphereCover cube = bounded_cover(cube_mesh(), 0.25, 1.0);
+  EXPECT_GE(cube.lower_bound, 8U);
+  EXPECT_LE(cube.lower_bound, cube.spheres.size());
 }
 
 TEST(CoverBound, IsOneWhereOneSphereDoes) {
