@@ -14,8 +14,20 @@ bool is_plain(const py::array& array) {
          (array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0;
 }
 
+// What numpy.ma hides would be read like the rest.
+void refuse_hidden(const py::array& array, const char* name) {
+  const bool may_hide = Py_TYPE(array.ptr()) != py::detail::npy_api::get().PyArray_Type_;
+  if (may_hide && py::module_::import("numpy.ma").attr("is_masked")(array).cast<bool>()) {
+    throw Error(name, "numbers of it are masked; .filled() and .compressed() say what to take");
+  }
+}
+
 py::array as_array(py::handle value, const char* name) {
-  if (py::isinstance<py::array>(value)) return py::reinterpret_borrow<py::array>(value);
+  if (py::isinstance<py::array>(value)) {
+    auto array = py::reinterpret_borrow<py::array>(value);
+    refuse_hidden(array, name);
+    return array;
+  }
   py::array array = py::array::ensure(value);
   if (!array) throw py::type_error(std::string(name) + ": it is not an array of numbers");
   return array;

@@ -43,6 +43,7 @@ def level_with(parent):
         (lambda: spherule.certify(CUBE, np.zeros((4, 5))), r"spheres: .*\(4, 5\)"),
         (lambda: spherule.read_mesh("no such file.stl"), "no such file.stl"),
         (lambda: spherule.load_tree("no such.tree"), "no such.tree"),
+        (lambda: spherule.build_tree(np.ma.masked_equal([[0, 0, 0, 1.0], [0, 0, 0, 9.0]], 9.0)), "spheres: .*masked"),
         (lambda: spherule.spheres_of(np.zeros((2, 3)), [1.0]), r"radii: .*\(1,\), not \(2,\)"),
         (lambda: spherule.spheres_of(np.zeros((2, 4)), [1.0, 1.0]), r"centers: .*\(2, 4\), not \(n, 3\)"),
         (lambda: TREE.level(99), "level"),
