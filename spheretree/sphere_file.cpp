@@ -64,7 +64,7 @@ ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
   const auto put = [&refuse](double value, const std::string& key) {
     return number(value, "certificate: " + key, refuse);
   };
-  ordered_json certificate;
+  ordered_json certificate = ordered_json::object();
   certificate["covered"] = record.covered;
   certificate["uncovered_depth"] = {put(record.uncovered_depth_lower, "uncovered_depth"),
                                     put(record.uncovered_depth_upper, "uncovered_depth")};
@@ -73,6 +73,7 @@ ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
   };
   put_optional("protrusion_over_simplified_max", record.protrusion_over_simplified_max);
   put_optional("protrusion_over_mesh_max", record.protrusion_over_mesh_max);
+  if (!record.protrusion_in_zones.empty()) certificate["zones"] = ordered_json::array();
   for (const double protrusion : record.protrusion_in_zones) {
     certificate["zones"].push_back({{"protrusion_over_simplified_max", put(protrusion, "zones")}});
   }
@@ -102,7 +103,7 @@ ordered_json written(const std::map<std::string, OptionValue>& options, const Re
 }
 
 ordered_json written(const BodyRecord& body, const Refusal& refuse) {
-  ordered_json object;
+  ordered_json object = ordered_json::object();
   object["name"] = body.name;
   object["sphere_count"] = body.sphere_count;
   if (body.certificate) object["certificate"] = written(*body.certificate, refuse);

@@ -98,7 +98,7 @@ std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
 }
 
 Json judgement_json(const SrdfJudgement& judgement, const RobotModel& robot) {
-  Json json;
+  Json json = Json::object();
   json["format"] = "spherule-srdf-check";
   json["version"] = 1;
   json["pairs"] = Json::array();

@@ -69,7 +69,7 @@ const char* name_of(Verdict verdict) {
 }
 
 Json to_json(const CollisionResult& result) {
-  Json json;
+  Json json = Json::object();
   json["verdict"] = name_of(result.verdict);
   json["pairs"] = Json::array();
   for (const SpherePair& pair : result.pairs)

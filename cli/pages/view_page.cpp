@@ -68,7 +68,7 @@ struct ContentEncoder {
   const Eigen::Vector3d& middle;
 
   Json operator()(const TriangleMesh& mesh) const {
-    Json json;
+    Json json = Json::object();
     add_triangles(mesh, json);
     return json;
   }
@@ -177,7 +177,7 @@ std::string make_view_page(const ViewScene& scene) {
   if (box.isEmpty()) throw Error("view", "there is nothing to show");
   const Eigen::Vector3d middle =
       scene.robot.is_null() ? Eigen::Vector3d(box.center()) : Eigen::Vector3d::Zero();
-  Json json;
+  Json json = Json::object();
   json["middle"] = to_json(middle);
   json["robot"] = scene.robot;
   if (!scene.trajectory.is_null()) json["trajectory"] = scene.trajectory;

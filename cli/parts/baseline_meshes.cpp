@@ -30,7 +30,7 @@ struct MeshArguments : BaselineArguments {
 // What a method makes, and what it is called in the figures.
 struct BaselineMeshes {
   std::vector<TriangleMesh> meshes;
-  Json figures;
+  Json figures = Json::object();
 };
 
 // A method is one row of methods() below: its name, a sentence, what only it takes, and the call.

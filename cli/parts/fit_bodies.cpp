@@ -104,14 +104,14 @@ std::string report_text(const ModelBodies& model,
                         const std::vector<std::optional<MeshReport>>& reports,
                         std::span<const BodyFit> fits, const ModelUnit& unit,
                         ReportContent content) {
-  Json json;
+  Json json = Json::object();
   json["format"] = "spherule-bodies-report";
   json["version"] = 1;
   json["unit"] = to_json(unit);
   json["bodies"] = Json::array();
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const Body& body = model.bodies[i];
-    Json one;
+    Json one = Json::object();
     if (fits[i].fit) {
       one = to_json({body.name, body.mesh, model.cad[i], model.scales[i], *reports[i]},
                     *fits[i].fit, content);

@@ -41,7 +41,7 @@ Json to_json(const CoverHistoryEntry& entry) {
 }
 
 Json to_json(const SphereCover& cover) {
-  Json json;
+  Json json = Json::object();
   json["lower_bound"] = cover.lower_bound > 0 ? Json(cover.lower_bound) : Json(nullptr);
   json["inflation"] = spherule::to_json(cover.inflation);
   json["seeds_rejected"] = cover.seeds_rejected;
@@ -77,7 +77,7 @@ Json to_json(const CoverBreakdown& breakdown) {
 }  // namespace
 
 Json to_json(const FittedModel& model, const Simplification& result, ReportContent content) {
-  Json json;
+  Json json = Json::object();
   json["mesh"] = to_json(model.name, model.mesh, model.report);
   if (model.cad) json["cad"] = to_json(*model.cad);
   json["options"] = to_json(option_record(result.options, model.scale));

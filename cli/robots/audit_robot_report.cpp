@@ -124,7 +124,7 @@ void put_repair(std::ostream& out, const RobotAuditReport& report) {
 }
 
 Json json_of(const LinkAudit& link) {
-  Json json;
+  Json json = Json::object();
   json["link"] = link.link;
   json["sphere_count"] = link.spheres;
   json["uncovered_share"] = link.uncovered_share;
@@ -161,7 +161,7 @@ std::string audit_table(const RobotAuditReport& report) {
 }
 
 Json audit_json(const RobotAuditReport& report) {
-  Json json;
+  Json json = Json::object();
   json["format"] = name_of(report.file.format);
   json["links_covered"] = report.audit.links_covered;
   json["links"] = Json::array();
@@ -171,6 +171,7 @@ Json audit_json(const RobotAuditReport& report) {
   json["unknown_links"] = report.audit.unknown_links;
   if (!report.audit.configurations.empty()) {
     json["configurations_covered"] = report.audit.configurations_covered;
+    json["configurations"] = Json::array();
     for (const ConfigurationAudit& configuration : report.audit.configurations) {
       json["configurations"].push_back({{"uncovered_depth", to_json(configuration.uncovered_depth)},
                                         {"deepest_link", configuration.deepest_link}});

@@ -28,7 +28,7 @@ std::string millimetres(double length) {
 }
 
 Json counts_of(const FalseAlarms& alarms, const RobotModel& robot) {
-  Json json;
+  Json json = Json::object();
   json["postures"] = alarms.postures;
   json["free"] = alarms.free;
   json["proofs"] = name_of(alarms.proofs);

@@ -61,7 +61,7 @@ const std::string& link_name(const RobotModel& robot, int link) {
 }
 
 Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double seconds) {
-  Json json;
+  Json json = Json::object();
   for (const PairVerdict verdict :
        {PairVerdict::kNever, PairVerdict::kTouching, PairVerdict::kUnknown}) {
     json[std::string(name_of(verdict))] = count_of(pairs, verdict);
@@ -69,7 +69,7 @@ Json pair_summary(const LinkPairs& pairs, const RobotModel& robot, double second
   json["seconds"] = seconds;
   json["pairs"] = Json::array();
   for (const LinkPair& pair : pairs.pairs()) {
-    Json written;
+    Json written = Json::object();
     written["links"] = {link_name(robot, pair.first), link_name(robot, pair.second)};
     written["verdict"] = name_of(pair.verdict);
     if (!pair.witness.empty()) written["witness"] = posture_json(robot, pair.witness);
@@ -94,7 +94,7 @@ Json to_json(const std::vector<PostureContact>& contacts) {
 }
 
 Json to_json(const JudgedPair& judged, const RobotModel& robot) {
-  Json json;
+  Json json = Json::object();
   json["links"] = {judged.pair.link_a, judged.pair.link_b};
   json["reason"] = judged.pair.reason;
   json["verdict"] = name_of(judged.verdict);
@@ -130,7 +130,7 @@ std::string describe_link_pairs(const LinkPairs& pairs, double seconds) {
 }
 
 Json posture_json(const RobotModel& robot, const std::vector<double>& configuration) {
-  Json json;
+  Json json = Json::object();
   for (std::size_t i = 0; i < configuration.size(); ++i) {
     json[joint_of(robot, i).name] = configuration[i];
   }

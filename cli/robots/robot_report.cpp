@@ -48,7 +48,7 @@ const std::string& name_of(LinkGeometry geometry) {
 }
 
 Json summary_of(const LinkCover& link) {
-  Json json;
+  Json json = Json::object();
   json["link"] = link.link;
   json["sphere_count"] = link.spheres.size();
   if (!link.fit) return json;
@@ -126,7 +126,7 @@ std::string describe_filling(const RobotCover& cover) {
 
 Json robot_summary(const std::string& urdf, const RobotCover& cover, double seconds) {
   const Totals totals(cover.links);
-  Json json;
+  Json json = Json::object();
   json["format"] = "spherule-robot-report";
   json["version"] = 1;
   json["urdf"] = urdf;

@@ -71,7 +71,7 @@ Json to_json(const std::map<std::string, OptionValue>& options) {
 }
 
 Json to_json(const Certificate& certificate) {
-  Json json;
+  Json json = Json::object();
   json["covered"] = certificate.covered;
   json["uncovered_depth"] = to_json(certificate.uncovered_depth);
   json["uncovered_depth_surface"] = to_json(certificate.surface_depth);
@@ -83,6 +83,7 @@ Json to_json(const Certificate& certificate) {
                                          ? to_json(certificate.protrusion_over_mesh->upper)
                                          : Json(nullptr);
   json["protrusion_over_mesh"] = to_json(certificate.protrusion_over_mesh);
+  if (!certificate.protrusion_in_zones.empty()) json["zones"] = Json::array();
   for (const double protrusion : certificate.protrusion_in_zones) {
     json["zones"].push_back({{"protrusion_over_simplified_max", to_json(protrusion)}});
   }

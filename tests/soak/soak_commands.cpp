@@ -83,11 +83,13 @@ const std::vector<SoakCommand>& soak_commands() {
        CommandPart::kKills},
       {"completion", {"completion", "bash", "-o", "out/spherule"}, CommandPart::kKills},
       {"manual", {"manual", "-o", "out"}, CommandPart::kKills},
-      {"audit", {"audit", "in/bar.stl", "in/bar.json"}, CommandPart::kMemory},
-      {"collide", {"collide", "in/a.tree", "in/b.tree", "--distance"}, CommandPart::kMemory},
+      {"audit", {"audit", "in/bar.stl", "in/bar.json", "--json"}, CommandPart::kMemory},
+      {"collide",
+       {"collide", "in/a.tree", "in/b.tree", "--distance", "--json"},
+       CommandPart::kMemory},
       {"check",
        {"check", "in/bars.urdf", "in/scene.json", "in/path.csv", "--spheres", "in/bars.yml",
-        "--edges"},
+        "--edges", "--json"},
        CommandPart::kMemory}};
   return kCommands;
 }

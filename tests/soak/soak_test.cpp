@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -128,6 +129,25 @@ TEST(Soak, AnAllocationThatFailsIsToldAndEndsTheCommand) {
     EXPECT_EQ(record.cases, failing.runs);
     EXPECT_EQ(record.near, failing.runs);
     for (const std::string& fault : record.faults) ADD_FAILURE() << fault;
+  }
+}
+
+// The last ones lie where the page's JSON is composed and written.
+TEST(Soak, EachOfTheLastAllocationsMayFail) {
+  const SoakCommand& view = command("view");
+  const auto check = [&](const FailingAllocations& failing) {
+    return check_memory(SPHERULE_COMMAND, SPHERULE_FAILING_NEW, view, failing);
+  };
+  constexpr std::uint64_t kStep = 250;
+  const SoakRecord coarse = check({kStep, kStep, 1000});
+  ASSERT_TRUE(coarse.is_last);
+  const std::uint64_t runs = test::effort(kStep, 10);
+  const SoakRecord record = check({kStep * coarse.cases, 1, runs});
+  EXPECT_TRUE(record.is_last || record.cases == runs);
+  const SoakRecord before = check({kStep * coarse.cases - runs, 1, runs});
+  EXPECT_EQ(before.cases, runs);
+  for (const SoakRecord& part : {coarse, record, before}) {
+    for (const std::string& fault : part.faults) ADD_FAILURE() << fault;
   }
 }
 

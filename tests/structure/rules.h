@@ -10,7 +10,7 @@ namespace spherule {
 
 // Checks the sources of the project against its rules: who may include whom, which third party is
 // seen by which file (the table stands in rooms.cpp), SPDX line first, at most kMaxLines lines,
-// `#pragma once` in headers.
+// `#pragma once` in headers, no JSON values that are null at first.
 inline constexpr std::size_t kMaxLines = 400;
 
 // What is wrong with one file, given its path relative to the root of the project. Each problem

@@ -129,6 +129,8 @@ TEST(Structure, FormFaultsAreFound) {
   EXPECT_TRUE(
       check_file("tests/run", "#!/bin/bash\n# SPDX-License-Identifier: BSD-3-Clause\n").empty());
   EXPECT_FALSE(check_file("tests/run", "#!/bin/bash\necho\n").empty());
+  EXPECT_FALSE(check_file("cli/text/a.cpp", kLicence + "  Json json;\n").empty());
+  EXPECT_TRUE(check_file("cli/text/a.cpp", kLicence + "  Json json = Json::object();\n").empty());
   std::string longest = kLicence;
   for (std::size_t line = 1; line < kMaxLines; ++line) longest += "\n";
   EXPECT_TRUE(check_file("collide/a.cpp", longest).empty());
