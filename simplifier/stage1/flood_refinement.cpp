@@ -24,8 +24,11 @@
 // beside them can be followed. Between open leaves of edge h that share a face the clearance on the
 // segment between their centres is at least T - 1.37 h: they are free and passed once 1.37 h is
 // less than s rho. A leaf with a sphere of its own that is not reached is halved like them, until
-// its cells are finest. Should halving end before (by memory, or the resolution of coordinates), a
-// larger s is stated for which no open leaf is left, at most that of a grid as it is that has no
+// its cells are finest. Where a zone of a smaller rho ends beside reached leaves that have rho and
+// not T, its leaves are open and never reached, however fine: with zones none is halved for which
+// 1.37 h is small enough, and the grid becomes at most sixteen times as large, or a million cells.
+// Should halving end before (by that, by memory, or the resolution of coordinates), a larger s is
+// stated for which no open leaf is left, at most that of a grid as it is that has no
 // own spheres. If none is proved up to there and there are own spheres, the grid is made anew
 // without them.
 
@@ -47,12 +50,26 @@ namespace {
 // rho + h / 2 that suffices to get to the face of any free cell.
 constexpr double kUniform = 0.8661 + 0.5;
 constexpr int kRings = 2;
+// Of the edge: more than the clearance between two open leaves may lack.
+constexpr double kLacks = 1.37;
+// Of cells, with zones: in all, or those of the grid as it was made so many times.
+constexpr std::size_t kMostBesideZones = std::size_t{1} << 20;
+constexpr std::size_t kMostGrowth = 16;
 
 }  // namespace
 
 class FloodGrid::Refinement {
  public:
-  explicit Refinement(FloodGrid& grid) : grid_(grid) {}
+  explicit Refinement(FloodGrid& grid)
+      : grid_(grid),
+        has_zones_(grid.diameter_.least_radius() < grid.diameter_.radius()),
+        most_cells_(grid.shape_.max_cells) {
+    if (!has_zones_) return;
+    most_cells_ =
+        std::min(most_cells_, std::max(kMostBesideZones, kMostGrowth * grid.cells_.size()));
+  }
+
+  bool has_zones() const { return has_zones_; }
 
   // Takes all leaves into account for a share, from now on.
   void begin(double share) {
@@ -117,7 +134,7 @@ class FloodGrid::Refinement {
     }
     std::size_t more = 0;
     for (const std::size_t i : chosen) more += most_cells_within(cells()[i]);
-    if (chosen.empty() || cells().size() + more > grid_.shape_.max_cells) return false;
+    if (chosen.empty() || cells().size() + more > most_cells_) return false;
     std::sort(chosen.begin(), chosen.end());
     const std::size_t begin = cells().size();
     for (const std::size_t i : chosen) grid_.halve(i);
@@ -139,8 +156,15 @@ class FloodGrid::Refinement {
   const std::vector<Entry>& cells() const { return grid_.cells_; }
 
   bool can_be_halved(const Entry& cell) const {
-    return (cell.finest || cell.state == State::kOwnSphere) && cell.level < kMostLevels &&
-           grid_.edge(cell.level + 1) > 1e3 * grid_.rounding();
+    if (!(cell.finest || cell.state == State::kOwnSphere) || cell.level >= kMostLevels ||
+        grid_.edge(cell.level + 1) <= 1e3 * grid_.rounding()) {
+      return false;
+    }
+    return !has_zones_ || kLacks * grid_.edge(cell.level) > share_ * least_rho(cell);
+  }
+
+  double least_rho(const Entry& cell) const {
+    return grid_.diameter_.near(grid_.center(cell), grid_.half_diagonal(cell.level)).least;
   }
 
   // That halving makes: a leaf with a sphere of its own is halved until its cells are finest.
@@ -204,7 +228,7 @@ class FloodGrid::Refinement {
     const double most = add_up(cell.clearance + grid_.widest_bounds_, reach);
     const auto suffices = [&](double rho) { return most >= (1.0 + share_) * rho * (1.0 - 1e-9); };
     if (!suffices(grid_.diameter_.least_radius())) return false;
-    return suffices(grid_.diameter_.near(grid_.center(cell), reach).least);
+    return suffices(least_rho(cell));
   }
 
   // Whether the cell lies as a whole in the sphere of a reached leaf that touches it.
@@ -305,6 +329,8 @@ class FloodGrid::Refinement {
   }
 
   FloodGrid& grid_;
+  bool has_zones_;
+  std::size_t most_cells_;
   double share_ = 0.0;
   std::vector<char> is_possible_;       // of each cell
   std::vector<std::size_t> uncertain_;  // possible and not held, in order
@@ -324,9 +350,12 @@ std::optional<double> FloodGrid::tighten(double share, const Progress& progress)
     if (!refinement.refine()) break;
     is_proved = refinement.lost().empty();
   }
-  // For how much more room it does hold.
+  // For how much more room it does hold: with zones it is tried in larger and larger steps, as
+  // there may be none.
+  double factor = 1.1;
   while (!is_proved && share < uniform) {
-    share = std::min(1.1 * share, uniform);
+    share = std::min(factor * share, uniform);
+    if (refinement.has_zones()) factor *= factor;
     refinement.begin(share);
     is_proved = refinement.lost().empty();
   }
