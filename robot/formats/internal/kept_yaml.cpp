@@ -295,8 +295,13 @@ std::string with_spheres(std::string_view text, const std::filesystem::path& pat
   const KeptPlaces places = places_in(root, format, gathered);
   const RobotSpheres with_kept =
       with_kept_spheres(spheres, root, path, SphereGatherer(path.string(), text.size()));
-  const auto changed = [&](std::string_view old) {
-    return KeptYaml(old, spheres, with_kept, places, gathered).changed();
+  const auto changed = [&](std::string_view old) -> std::optional<std::string> {
+    try {
+      return KeptYaml(old, spheres, with_kept, places, gathered).changed();
+    } catch (const YAML::Exception&) {
+      // Control characters are escaped, and a key has at most 1024 characters.
+      gathered.refuse({}, "has a link whose name is too long for a key of YAML");
+    }
   };
   if (const auto result = changed(text)) return mark + *result;
   const auto anew = changed(rewritten_yaml(document, with_kept, places.spheres, gathered));

@@ -355,6 +355,21 @@ TEST_F(KeptFiles, AByteOrderMarkAndTheEndOfTheDocumentStay) {
   EXPECT_TRUE(kept(SphereFormat::kCurobo, lists).ends_with("# below\n...\n"));
 }
 
+// Its control characters have to be escaped, which makes it four times as long.
+TEST_F(KeptFiles, ANameOfALinkThatIsTooLongForAKeyIsRefused) {
+  const std::string name = "held" + std::string(300, '\x06');
+  const auto original = folder_.write("original", "collision_spheres:\n  " + name + ": []\n");
+  try {
+    write_robot_spheres(spheres_, SphereFormat::kCurobo, {.original = original},
+                        folder_.path() / "kept");
+    ADD_FAILURE() << "was written";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("too long for a key of YAML"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "kept"));
+}
+
 // Spheres are written where they are read.
 TEST_F(KeptFiles, CuroboWhoseConfigurationIsBesideItsSpheres) {
   spheres_.self_collision_ignore.clear();
