@@ -60,6 +60,8 @@ void check_options(const ExternalOptions& options) {
   if (!(d > 0.0 && d <= kMaxCoordinate)) {
     throw Error("min external diameter", "must be positive and finite");
   }
+  // Products of four lengths vanish where those are some 1e-80, and distances then have no bounds.
+  if (d < 1e-60) throw Error("min external diameter", "is below 1e-60: another unit?");
   if (options.placement == ExternalPlacement::kRandom && options.limit > 100'000'000) {
     throw Error("external limit", "at most 100 million attempts");
   }

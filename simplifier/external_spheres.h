@@ -108,9 +108,9 @@ struct ExternalSpheres {
 // Stage 1 (section II and Algorithm 1 of the paper that simplify.h names; docs/covering.md).
 // Deterministic for an equal mesh and equal options, on any number of threads.
 // Throws Error for a mesh that validate() refuses and for options out of range (D must be
-// positive and finite unless nothing is placed, padding finite and not negative, the grid not finer
-// than the resolution of the coordinates or 2^20 steps, zones usable and their values not above D
-// and E, and a smaller D only for the reachable placement).
+// finite and at least 1e-60 unless nothing is placed, padding finite and not negative, the grid not
+// finer than the resolution of the coordinates or 2^20 steps, zones usable and their values not
+// above D and E, and a smaller D only for the reachable placement).
 ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options);
 
 }  // namespace spherule

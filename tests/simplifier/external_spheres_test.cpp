@@ -343,7 +343,13 @@ TEST(ExternalSpheres, BadOptionsAreRefusedByName) {
     EXPECT_EQ(refused(options), "max cells") << bad;
   }
   EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 1e-9)), "grid step");
-  EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 5e-324)), "grid step");
+  // The search would not end in a mesh of such a size.
+  for (const double bad : {5e-324, 0.9e-60}) {
+    const ExternalOptions options = options_for(ExternalPlacement::kReachable, bad);
+    EXPECT_EQ(refused(options, box_mesh(Vector3d::Zero(), Vector3d::Constant(10.0 * bad))),
+              "min external diameter")
+        << bad;
+  }
   EXPECT_EQ(refused(options_for(ExternalPlacement::kReachable, 0.5), {}), "mesh");
   TriangleMesh broken = cube_mesh();
   broken.vertices[3].y() = kNan;
