@@ -25,12 +25,11 @@
 // segment between their centres is at least T - 1.37 h: they are free and passed once 1.37 h is
 // less than s rho. A leaf with a sphere of its own that is not reached is halved like them, until
 // its cells are finest. Where a zone of a smaller rho ends beside reached leaves that have rho and
-// not T, its leaves are open and never reached, however fine: with zones none is halved for which
-// 1.37 h is small enough, and the grid becomes at most sixteen times as large, or a million cells.
-// Should halving end before (by that, by memory, or the resolution of coordinates), a larger s is
-// stated for which no open leaf is left, at most that of a grid as it is that has no
-// own spheres. If none is proved up to there and there are own spheres, the grid is made anew
-// without them.
+// not T, its leaves are open and never reached, however fine: with zones the grid becomes at most
+// sixteen times as large, or a million cells. Should halving end before (by that, by memory, or the
+// resolution of coordinates), a larger s is stated for which no open leaf is left, at most that of
+// a grid as it is that has no own spheres. If none is proved up to there and there are own spheres,
+// the grid is made anew without them.
 
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/support/parallel.h"
@@ -50,8 +49,6 @@ namespace {
 // rho + h / 2 that suffices to get to the face of any free cell.
 constexpr double kUniform = 0.8661 + 0.5;
 constexpr int kRings = 2;
-// Of the edge: more than the clearance between two open leaves may lack.
-constexpr double kLacks = 1.37;
 // Of cells, with zones: in all, or those of the grid as it was made so many times.
 constexpr std::size_t kMostBesideZones = std::size_t{1} << 20;
 constexpr std::size_t kMostGrowth = 16;
@@ -156,15 +153,8 @@ class FloodGrid::Refinement {
   const std::vector<Entry>& cells() const { return grid_.cells_; }
 
   bool can_be_halved(const Entry& cell) const {
-    if (!(cell.finest || cell.state == State::kOwnSphere) || cell.level >= kMostLevels ||
-        grid_.edge(cell.level + 1) <= 1e3 * grid_.rounding()) {
-      return false;
-    }
-    return !has_zones_ || kLacks * grid_.edge(cell.level) > share_ * least_rho(cell);
-  }
-
-  double least_rho(const Entry& cell) const {
-    return grid_.diameter_.near(grid_.center(cell), grid_.half_diagonal(cell.level)).least;
+    return (cell.finest || cell.state == State::kOwnSphere) && cell.level < kMostLevels &&
+           grid_.edge(cell.level + 1) > 1e3 * grid_.rounding();
   }
 
   // That halving makes: a leaf with a sphere of its own is halved until its cells are finest.
@@ -228,7 +218,7 @@ class FloodGrid::Refinement {
     const double most = add_up(cell.clearance + grid_.widest_bounds_, reach);
     const auto suffices = [&](double rho) { return most >= (1.0 + share_) * rho * (1.0 - 1e-9); };
     if (!suffices(grid_.diameter_.least_radius())) return false;
-    return suffices(least_rho(cell));
+    return suffices(grid_.diameter_.near(grid_.center(cell), reach).least);
   }
 
   // Whether the cell lies as a whole in the sphere of a reached leaf that touches it.
