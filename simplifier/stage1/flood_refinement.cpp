@@ -49,7 +49,7 @@ namespace {
 // rho + h / 2 that suffices to get to the face of any free cell.
 constexpr double kUniform = 0.8661 + 0.5;
 constexpr int kRings = 2;
-// Of cells, with zones: in all, or those of the grid as it was made so many times.
+// With zones the refined grid has at most so many cells, or so many times those it was made with.
 constexpr std::size_t kMostBesideZones = std::size_t{1} << 20;
 constexpr std::size_t kMostGrowth = 16;
 
