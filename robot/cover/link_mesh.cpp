@@ -4,6 +4,7 @@
 #include "mesh/io/length_unit.h"
 #include "mesh/io/mesh_io.h"
 #include "mesh/parsing/input_file.h"
+#include "robot/cover/internal/link_subject.h"
 #include "robot/cover/internal/primitive_mesh.h"
 #include "spheretree/error.h"
 #include "spheretree/rounding.h"
@@ -100,7 +101,7 @@ std::span<const LinkShape> link_shapes(const LinkDescription& link, LinkGeometry
 std::optional<TriangleMesh> link_mesh(const LinkDescription& link, const LinkMeshOptions& options) {
   const std::span<const LinkShape> shapes = link_shapes(link, options.geometry);
   if (shapes.empty()) return std::nullopt;
-  const std::string subject = "link '" + link.name + "'";
+  const std::string subject = internal::subject_of(link.name);
   TriangleMesh mesh;
   for (const LinkShape& shape : shapes) {
     TriangleMesh part =

@@ -5,6 +5,7 @@
 #include "robot/cover/internal/link_parts.h"
 #include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
+#include "robot/cover/internal/link_subject.h"
 #include "spheretree/error.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ void check_sizes(std::span<const internal::LinkParts> parts, double max_error) {
     if (!part.mesh) continue;
     const double across = internal::box_of(*part.mesh).diagonal().norm();
     const std::string fault = internal::size_fault(across, max_error);
-    if (!fault.empty()) throw Error("link '" + part.link + "'", fault);
+    if (!fault.empty()) throw Error(internal::subject_of(part.link), fault);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "robot/cover/internal/equal_links.h"
 #include "robot/cover/internal/link_size.h"
 #include "robot/cover/internal/link_solid.h"
+#include "robot/cover/internal/link_subject.h"
 #include "robot/cover/internal/open_mesh.h"
 #include "robot/model/internal/link_paths.h"
 #include "robot/model/internal/shared_work.h"
@@ -41,10 +42,6 @@ struct Task {
   std::string doubt{};  // about its size; mostly empty
 };
 
-std::string subject_of(const std::string& link) {
-  return "link '" + link + "'";
-}
-
 void require(bool ok, const std::string& subject, const std::string& what) {
   if (!ok) throw Error(subject, what);
 }
@@ -65,7 +62,7 @@ void blaming_link(const std::string& link, Work work) {
   try {
     work();
   } catch (const Error& error) {
-    throw Error(subject_of(link), error.what());
+    throw Error(internal::subject_of(link), error.what());
   }
 }
 
@@ -87,7 +84,7 @@ SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& op
   result.padding = own->second.padding.value_or(result.padding);
   result.zones = own->second.zones;
   check_lengths(result.max_error, result.min_external_diameter, result.padding,
-                subject_of(link) + " ");
+                internal::subject_of(link) + " ");
   blaming_link(link, [&] {
     SimplifyOptions complete = result;
     complete_lengths(complete, {});
@@ -103,11 +100,11 @@ void check_options(const RobotDescription& robot, const RobotCoverOptions& optio
     const auto link = std::find_if(robot.links.begin(), robot.links.end(),
                                    [&](const LinkDescription& l) { return l.name == name; });
     if (link == robot.links.end()) {
-      throw Error(subject_of(name),
+      throw Error(internal::subject_of(name),
                   "the robot has no such link" +
                       internal::did_you_mean(name, robot.links, &LinkDescription::name));
     }
-    require(!link_shapes(*link, options.geometry).empty(), subject_of(name),
+    require(!link_shapes(*link, options.geometry).empty(), internal::subject_of(name),
             "has options and no geometry to cover");
   }
 }
@@ -166,7 +163,7 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
                                   .weld = options.weld});
     task.across = internal::box_of(task.mesh).diagonal().norm();
     const std::string fault = internal::size_fault(task.across, max_error);
-    require(fault.empty(), subject_of(link.name), fault);
+    require(fault.empty(), internal::subject_of(link.name), fault);
   });
   require_errors_below_sizes(tasks);
   for (Task& task : tasks) {

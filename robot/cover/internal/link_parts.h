@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/triangle_mesh.h"
+#include "robot/cover/internal/link_subject.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_description.h"
@@ -38,7 +39,7 @@ auto of_link(const std::string& link, Work work) {
   try {
     return work();
   } catch (const Error& error) {
-    throw Error("link '" + link + "', " + error.subject(), error.reason());
+    throw Error(subject_of(link) + ", " + error.subject(), error.reason());
   }
 }
 
