@@ -49,11 +49,14 @@ void check_options(const ExternalOptions& options) {
   const bool none = options.placement == ExternalPlacement::kNone;
   check_zones(options.zones, options.max_error > 0.0 ? options.max_error : infinity,
               none ? infinity : options.min_external_diameter);
-  const bool own_diameters =
-      options.keep_concave_edges ||
-      std::ranges::any_of(options.zones, [](const Zone& z) { return !!z.min_external_diameter; });
-  if (own_diameters && options.placement != ExternalPlacement::kReachable) {
-    throw Error("zones", "a smaller min external diameter needs the placement \"reachable\"");
+  if (options.placement != ExternalPlacement::kReachable) {
+    if (std::ranges::any_of(options.zones,
+                            [](const Zone& z) { return !!z.min_external_diameter; })) {
+      throw Error("zones", "a smaller min external diameter needs the placement \"reachable\"");
+    }
+    if (options.keep_concave_edges) {
+      throw Error("keep concave edges", "needs the placement \"reachable\"");
+    }
   }
   if (none) return;
   const double d = options.min_external_diameter;

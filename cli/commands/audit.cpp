@@ -233,12 +233,13 @@ int audit(const AuditArguments& arguments) {
     has_larger_diameter = solid.larger_diameter;
   };
   if (has_diameter) {
-    place();
+    blame_named_file(arguments.models.front(), "grid step", place);
   } else {
     blame_file(arguments.spheres, place);
   }
   const std::optional<ExternalSpheres>& external = proof->external();
-  const Certificate certificate = certify(mesh, file.spheres, proof->options());
+  const Certificate certificate = blame_named_file(
+      arguments.spheres, "sphere ", [&] { return certify(mesh, file.spheres, proof->options()); });
   std::optional<Repaired> mended;
   if (mend) {
     mended = repaired(arguments, model, reading, file, options, proof->options());

@@ -177,7 +177,9 @@ int fit(FitArguments& arguments) {
   const Simplification result = [&] {
     ProgressBar bar;
     options.progress = bar.callback();
-    return blame_named_file(arguments.zones, "zone ", [&] { return simplify(mesh, options); });
+    return blame_named_file(arguments.zones, "zone ", [&] {
+      return blame_named_file(file, "grid step", [&] { return simplify(mesh, options); });
+    });
   }();
 
   // First of all what was requested and is proved.

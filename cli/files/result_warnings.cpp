@@ -41,10 +41,13 @@ std::vector<std::string> result_warnings(const Simplification& result) {
   if (ratio && *ratio > kLargestVolume) {
     std::ostringstream text;
     text << "the spheres hold about " << *ratio << " times the volume of the mesh: the max error "
-         << result.options.max_error
-         << " is coarse for it, or spaces are filled that a sphere of the min external diameter "
+         << result.options.max_error;
+    if (external.padding > result.options.max_error) {
+      text << " or the padding " << external.padding;
+    }
+    text << " is coarse for it, or spaces are filled that a sphere of the min external diameter "
          << result.options.min_external_diameter
-         << " cannot enter; if that is not wanted, choose less of either";
+         << " cannot enter; if that is not wanted, choose less of one of them";
     warnings.push_back(text.str());
   }
   return warnings;

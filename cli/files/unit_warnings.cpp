@@ -64,7 +64,7 @@ std::string unit_advice(const UnitMixup& mixup, double error, double extent,
   } else {
     text << ": if that is in " << units->mesh->plural << " and the error was meant in "
          << units->meant->plural << ", use --max-error " << error * units->factor()
-         << ", or for --scale " << 1.0 / units->factor();
+         << ", or the same with --scale " << 1.0 / units->factor();
   }
   return text.str();
 }

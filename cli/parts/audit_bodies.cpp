@@ -93,14 +93,17 @@ class Auditor {
   BodyVerdict proved(std::size_t body) const {
     const BodyRecord& record = file_.bodies[body];
     const TriangleMesh& mesh = model_.bodies[body].mesh;
-    SimplifyOptions options = blame_file(arguments_.spheres, [&] {
-      return blame_file(record.name, [&] { return options_from_record(record.options); });
-    });
+    const auto of_body = [&](auto action) {
+      return blame_file(arguments_.spheres, [&] { return blame_file(record.name, action); });
+    };
+    SimplifyOptions options = of_body([&] { return options_from_record(record.options); });
     options.threads = arguments_.threads;
     const bool has_diameter = take_min_external(arguments_.min_external, options) ||
                               record.options.contains("min-external");
-    const SolidProof proof(mesh, options, has_diameter);
-    const Certificate certificate = certify(mesh, spheres_[body], proof.options());
+    const Certificate certificate = of_body([&] {
+      const SolidProof proof(mesh, options, has_diameter);
+      return certify(mesh, spheres_[body], proof.options());
+    });
     BodyVerdict verdict{record.name, spherule::record(certificate), ""};
     if (certificate.uncovered_depth.lower > 0.0) verdict.deepest_leak = certificate.deepest_leak;
     return verdict;

@@ -97,6 +97,13 @@ TEST_F(AuditTest, BadInput) {
   expect_refusal({"audit", "box.stl", "ball.json", "--threads", "-1"}, "--threads");
 }
 
+TEST_F(AuditTest, RefusalsNameTheFileThatIsTooLargeOrTooFine) {
+  write_spheres("far.json", {{1, 1, 1, 1e12}});
+  expect_refusal({"audit", "box.stl", "far.json"}, "far.json: sphere 0: reaches more than");
+  expect_refusal({"audit", "box.stl", "far.json", "--min-external", "1e-9"},
+                 "box.stl: grid step: too fine for a model");
+}
+
 // What is wrong with a file is said with its name, however late it shows.
 TEST_F(AuditTest, BadOptionsInTheFileAreRefusedWithItsName) {
   const auto refuse = [&](const std::string& options, const std::string& reason) {

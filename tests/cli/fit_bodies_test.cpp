@@ -95,6 +95,8 @@ TEST_F(FitBodiesTest, Refusals) {
                  "is of other bodies: body 1 is a, of the models b");
   expect_refusal({"audit", "a.stl", "b.stl", "all.json", "--repair", "c.json"},
                  "has several bodies");
+  expect_refusal({"audit", "a.stl", "b.stl", "all.json", "--min-external", "1e-9"},
+                 "all.json: a: grid step: too fine");
   expect_refusal({"fit", "a.stl", "a.stl", "-o", "x.json"}, "a.stl: is named twice");
   expect_refusal({"fit", "a.stl", "b.stl", "-o", "b.stl"}, "b.stl");
   expect_refusal({"fit", "a.stl", "b.stl", "-o", "x.json", "--levels", "1,2"}, "are of one body");

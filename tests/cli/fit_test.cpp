@@ -309,6 +309,19 @@ TEST_F(FitTest, ZonesAreKeptProvedAndAudited) {
   EXPECT_EQ(run({"info", "box.json"}).exit_code, 0);
 }
 
+TEST_F(FitTest, RefusalsOfThePlacementNameTheirCause) {
+  const auto refuse = [&](const std::vector<std::string>& more, const std::string& reason) {
+    std::vector<std::string> line = {"fit", "box.stl", "-o", "no.json", "--max-error", "2"};
+    line.insert(line.end(), more.begin(), more.end());
+    const Outcome fit = run(line);
+    EXPECT_EQ(fit.exit_code, 2);
+    EXPECT_NE(fit.err.find("spherule: " + reason), std::string::npos) << fit.err;
+    EXPECT_FALSE(exists("no.json"));
+  };
+  refuse({"--min-external", "1e-9"}, "box.stl: grid step: too fine for a model");
+  refuse({"--keep-concave-edges", "--external", "random"}, "keep concave edges: needs");
+}
+
 TEST_F(FitTest, FaultsOfZonesAreNamedWithTheirFile) {
   const auto refuse = [&](const std::string& zones, const std::string& reason) {
     write("zones.json", R"({"format":"spherule-zones","version":1,"zones":[)" + zones + "]}");

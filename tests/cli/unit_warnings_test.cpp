@@ -22,8 +22,8 @@ TEST_F(UnitWarnings, NamesTheUnitOfAnErrorThatIsTooLarge) {
   EXPECT_NE(
       outcome.err.find("spherule: warning: part.stl: the max error 20 is more than a tenth of "
                        "the part, whose largest extent is 0.4: if that is in metres and the "
-                       "error was meant in millimetres, use --max-error 0.02, or for "
-                       "--scale 1000\n"),
+                       "error was meant in millimetres, use --max-error 0.02, or the "
+                       "same with --scale 1000\n"),
       std::string::npos)
       << outcome.err;
   EXPECT_EQ(fit({"--max-error", "0.02"}).err, "");
@@ -49,7 +49,7 @@ TEST_F(UnitWarnings, NamesTheUnitOfAnErrorThatIsTooSmall) {
   expect_warning({"--max-error", "0.25"}, "\n");
   expect_warning({"--max-error", "0.025"},
                  ": if that is in millimetres and the error was meant in metres, use --max-error "
-                 "25, or for --scale 0.001\n");
+                 "25, or the same with --scale 0.001\n");
   expect_warning({"--max-error", "0.025", "--units", "mm"},
                  ": both are in millimetres (as --units says); if the error was meant in metres, "
                  "use --max-error 0.025m\n");
@@ -81,6 +81,15 @@ TEST_F(UnitWarnings, SpheresOfFarMoreVolumeThanTheMesh) {
   const Outcome outcome = fit({"--max-error", "4"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.err.find(" times the volume of the mesh: the max error 4 is coarse for it"),
+            std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(UnitWarnings, PaddingOfFarMoreVolumeThanTheMesh) {
+  write_box("part.stl", {4, 4, 4});
+  const Outcome outcome = fit({"--max-error", "1", "--padding", "4"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find(": the max error 1 or the padding 4 is coarse for it"),
             std::string::npos)
       << outcome.err;
 }
