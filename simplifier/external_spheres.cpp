@@ -159,12 +159,16 @@ void place_reachable(const TriangleMesh& mesh, const MeshDistance& distance, con
   shape.max_cells = options.max_cells;
   std::optional<FloodGrid> made;
   std::optional<double> share;
-  for (const bool own_spheres : {true, false}) {
+  using Borders = FloodGrid::ZoneBorders;
+  for (const auto& [own_spheres, borders] :
+       {std::pair{true, Borders::kOpen}, {true, Borders::kFollowed}, {false, Borders::kFollowed}}) {
     if (share) break;
+    // Without zones there is no border.
+    if (made && !made->has_zones() && own_spheres) continue;
     shape.own_spheres = own_spheres;
     made.emplace(distance, result.padding, diameter, shape, options.progress);
     made->flood();
-    share = made->tighten(options.tightness, options.progress);
+    share = made->tighten(options.tightness, borders, options.progress);
   }
   const FloodGrid& grid = *made;
   result.closing_slack = 2.0 * diameter.radius() * share.value();

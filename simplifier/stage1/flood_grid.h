@@ -41,6 +41,9 @@ class FloodGrid {
     Sphere neighbour;   // about the centre of that cell
     double step = 0.0;  // h there
   };
+  // What of the reached cells near the border of a zone counts as within the larger sphere's reach
+  // in tighten(): all, which is quick and suffices for most, or what a way of its own leads to.
+  enum class ZoneBorders : std::uint8_t { kOpen, kFollowed };
   struct Shape {
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // low corner of the cube
     double step = 0.0;                                 // h, where no zone halves it
@@ -71,8 +74,9 @@ class FloodGrid {
   // for which this holds, `share` unless memory is short: wherever a sphere of radius (1 + s) rho
   // can be moved from outside the cube, its centre lies in a reached cell, or in the sphere of a
   // reached cell that touches its own. The proof is in flood_refinement.cpp. None if cells with own
-  // spheres prevent a proof for any s that holds without them.
-  std::optional<double> tighten(double share, const Progress& progress);
+  // spheres prevent a proof for any s that holds without them, or if zones have borders that have
+  // to be followed.
+  std::optional<double> tighten(double share, ZoneBorders borders, const Progress& progress);
 
   // After flood(): a sphere for each reached cell, its own or about its centre. Order: from coarse
   // to fine, along the Morton curve.
@@ -82,6 +86,8 @@ class FloodGrid {
   std::vector<Sphere> reached_spheres_that_count() const;
   std::vector<Frontier> frontier() const;
 
+  // Whether D follows the place.
+  bool has_zones() const { return diameter_.least_radius() < diameter_.radius(); }
   // Cells examined; all of them are kept, 24 bytes each.
   std::size_t cells_examined() const { return cells_.size(); }
 
