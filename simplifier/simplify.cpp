@@ -67,6 +67,16 @@ void complete_levels(SimplifyOptions& options) {
   std::reverse(options.levels.begin(), options.levels.end());
 }
 
+// Before the long work: spheres of such sizes would be refused by their certificate.
+void check_size(const SimplifyOptions& options, const MeshDistance& distance) {
+  constexpr double kLargest = 0x1p20;  // of the coordinates
+  const double largest = internal::largest_coordinate(distance.box());
+  const double error = options.levels.empty() ? options.max_error : options.levels.front();
+  if (largest > 0.0 && error > kLargest * largest) {
+    throw Error("max error", "is more than a million times as large as the mesh: another unit?");
+  }
+}
+
 CoverOptions cover_options(const SimplifyOptions& options) {
   return {.method = options.method,
           .max_error = options.max_error,
@@ -92,6 +102,7 @@ SimplifiedSolid internal::simplified_solid(const TriangleMesh& mesh, const MeshD
   SimplifyOptions& used = result.options = options;
   complete_levels(used);
   complete_lengths(used, mesh);
+  check_size(used, distance);
   check_zones(used.zones, used.max_error,
               used.external == ExternalPlacement::kNone ? std::numeric_limits<double>::infinity()
                                                         : used.min_external_diameter);

@@ -160,6 +160,13 @@ class TemporaryFile {
 
 }  // namespace
 
+fs::path written_file(const fs::path& path) {
+  const fs::path target = target_of(absolute_path(path)).path;
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(target, error);
+  return error ? target.lexically_normal() : canonical;
+}
+
 void check_writable(const fs::path& path) {
   const Target target = target_of(path);
   const TemporaryFile temporary(target.path, path);

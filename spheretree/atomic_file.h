@@ -30,6 +30,11 @@ namespace spherule {
 // ignored; then that is an Error, too.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
+// The file that write_file_atomically(path, ...) would replace or make: from the root on, links
+// followed. Two paths name one file if these are equal. Throws Error naming the path if it names no
+// file that could be written.
+std::filesystem::path written_file(const std::filesystem::path& path);
+
 // Throws the Error that write_file_atomically() would throw before its first byte: for a folder
 // that is missing or cannot be written to, a name that is too long, what is not a regular file. To
 // be called before long work; leaves no trace but the removal of what killed processes left.

@@ -203,6 +203,12 @@ struct CheckSetup {
 };
 
 CheckSetup set_up(const CheckArguments& arguments, const CheckInput& input) {
+  in_file(arguments.scene, [&] { check_scene_names(input.robot.model, input.scene); });
+  std::shared_ptr<const LinkPairs> proofs;
+  if (!arguments.pairs.empty()) {
+    proofs = std::make_shared<const LinkPairs>(load_link_pairs(
+        arguments.pairs, input.robot.model, covered_bodies(input.robot, input.options)));
+  }
   SphereRobot spheres =
       arguments.spheres.empty()
           ? cover_sphere_robot(arguments.urdf, input.robot, input.options)
@@ -212,14 +218,10 @@ CheckSetup set_up(const CheckArguments& arguments, const CheckInput& input) {
   CheckSetup setup{
       .prepared = in_file(arguments.scene,
                           [&] { return prepare(std::move(spheres), input.scene, input.options); }),
-      .proofs = nullptr,
+      .proofs = std::move(proofs),
       .is_whole = is_whole};
   warn_of_far_obstacles(arguments.scene, setup.prepared.scene);
-  if (!arguments.pairs.empty()) {
-    setup.proofs = std::make_shared<const LinkPairs>(load_link_pairs(
-        arguments.pairs, input.robot.model, covered_bodies(input.robot, input.options)));
-    setup.prepared.scene.set_link_pairs(setup.proofs);
-  }
+  if (setup.proofs != nullptr) setup.prepared.scene.set_link_pairs(setup.proofs);
   return setup;
 }
 

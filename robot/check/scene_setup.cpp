@@ -84,6 +84,20 @@ struct FileOf {
   }
 };
 
+// What stands for a file that is there, where files are not read. Throws Error as reading does that
+// cannot begin.
+constexpr double kStandInRadius = 1.0;
+
+struct StandIn {
+  template <class Source>
+  ObstacleShape operator()(const Source& source) const {
+    require_regular_file(source.path);
+    if (!std::filesystem::exists(source.path)) read_file(source.path);
+    return SolidSphere{kStandInRadius};
+  }
+  ObstacleShape operator()(const Primitive& primitive) const { return primitive; }
+};
+
 struct CoveredFile {
   SharedTree tree;
   std::vector<std::string> warnings;
@@ -120,6 +134,31 @@ class Preparation {
         scene_.allow_contact(Region{contact.body, contact.region}, contact.other);
       }
     }
+    set_paddings();
+    return {std::move(scene_), std::move(warnings_)};
+  }
+
+  // The same but for what files hold, which are not read.
+  void rehearse() && {
+    allow_disabled_pairs();
+    for (const SceneObstacle& obstacle : description_.obstacles) {
+      scene_.add(obstacle.name, std::visit(StandIn(), obstacle.shape), obstacle.world_from_shape);
+    }
+    const std::array<Sphere, 1> sphere = {Sphere{Eigen::Vector3d::Zero(), kStandInRadius}};
+    const SharedTree tree = shared(build_tree(sphere));
+    for (const SceneAttachment& object : description_.attached) {
+      std::visit(StandIn(), object.shape);
+      scene_.attach(object.name, object.link, tree, object.link_from_object);
+    }
+    // Regions are of spheres that are not known.
+    for (const SceneContact& contact : description_.allowed_contacts) {
+      scene_.allow_contact(contact.body, contact.other);
+    }
+    set_paddings();
+  }
+
+ private:
+  void set_paddings() {
     for (const ScenePadding& padding : description_.padding) {
       if (padding.other.empty()) {
         scene_.set_padding(padding.body, padding.padding);
@@ -127,10 +166,8 @@ class Preparation {
         scene_.set_padding(padding.body, padding.other, padding.padding);
       }
     }
-    return {std::move(scene_), std::move(warnings_)};
   }
 
- private:
   void allow_disabled_pairs() {
     if (!description_.srdf) return;
     require_regular_file(*description_.srdf);
@@ -220,7 +257,7 @@ class Preparation {
   }
 
   const SceneDescription& description_;
-  const RobotCoverOptions& cover_;
+  const RobotCoverOptions cover_;
   RobotScene scene_;
   std::vector<std::string> warnings_;
   MadeOnce<std::shared_ptr<const SolidMesh>> solids_;
@@ -242,6 +279,10 @@ std::vector<Sphere> point_spheres(const PointsSource& source) {
 PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,
                             const RobotCoverOptions& cover) {
   return Preparation(std::move(robot), scene, cover).run();
+}
+
+void check_scene_names(RobotModel robot, const SceneDescription& scene) {
+  Preparation(std::move(robot), scene, RobotCoverOptions()).rehearse();
 }
 
 }  // namespace spherule

@@ -44,6 +44,20 @@ void check(const RobotModel& robot, std::span<const LinkBody> bodies,
   }
 }
 
+// Searches leave variables that change nothing between the two links at zero.
+void keep_others_within_limits(const RobotModel& robot,
+                               std::span<const FreeBoxes::Variable> variables,
+                               std::vector<double>& configuration) {
+  for (std::size_t i = 0; i < configuration.size(); ++i) {
+    const bool is_searched = std::ranges::any_of(variables, [&](const FreeBoxes::Variable& other) {
+      return static_cast<std::size_t>(other.index) == i;
+    });
+    if (is_searched) continue;
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.variable_joints()[i])];
+    configuration[i] = std::clamp(configuration[i], joint.lower, joint.upper);
+  }
+}
+
 LinkPair prove(const RobotModel& robot, int first, int second,
                std::span<const internal::LinkPieces> pieces, const LinkPairOptions& options,
                Clock::time_point end) {
@@ -87,6 +101,7 @@ LinkPair prove(const RobotModel& robot, int first, int second,
     result.verdict = PairVerdict::kTouching;
     result.smallest_gap = 0.0;
     result.witness = std::move(found.witness);
+    keep_others_within_limits(robot, space->variables, result.witness);
   }
   return result;
 }

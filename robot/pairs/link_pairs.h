@@ -63,7 +63,9 @@ struct LinkPair {
   int first = 0;  // indices of links, the smaller one first
   int second = 0;
   PairVerdict verdict = PairVerdict::kUnknown;
-  std::vector<double> witness{};  // a configuration of the whole robot; empty unless they touch
+  // A configuration of the whole robot, empty unless they touch. Joints that do not move one of the
+  // links against the other are as near to zero as their limits allow.
+  std::vector<double> witness{};
   // An upper bound of the smallest gap found, up to rounding, in metres; 0 where they touch.
   // Infinite where no samples were taken or kept: of kNever, and of kUnknown where the boxes are
   // all free, no time was left, the joints or positions are too many or too large, or no samples

@@ -283,6 +283,27 @@ TEST_F(CheckTest, RefusesBadInput) {
   expect_refusal({"check", "slider.urdf"}, "scene");
 }
 
+// A robot whose covering is refused, by then.
+TEST_F(CheckTest, RefusesScenesBeforeTheRobotIsCovered) {
+  write("huge.urdf",
+        R"(<robot name="huge"><link name="base"/><link name="hand"><collision><geometry>
+    <box size="1e4 1e4 1e4"/></geometry></collision></link><joint name="turn" type="continuous">
+    <parent link="base"/><child link="hand"/></joint></robot>)");
+  write("path.csv", "0\n");
+  const auto refused = [this](const std::string& keys, const std::string& reason) {
+    write("cell.json", wall_and(keys));
+    expect_refusal({"check", "huge.urdf", "cell.json", "path.csv"}, reason);
+  };
+  refused("", "link 'hand': is");
+  refused(R"("padding": [{"body": "hnad", "distance": 0.1}])", "hnad: there is no link");
+  refused(R"("attached": [{"name": "tool", "link": "hand", "mesh": {"file": "none.stl"}}])",
+          "none.stl: ");
+  refused(R"("attached": [{"name": "tool", "link": "hnad", "tree": {"file": "cell.json"}}])",
+          "hnad: ");
+  refused(R"("robot": {"srdf": "none.srdf"})", "none.srdf: ");
+  expect_refusal({"check", "huge.urdf", "cell.json", "path.csv", "--pairs", "none.pairs"}, "none.");
+}
+
 TEST_F(CheckTest, ALongListOfMotionsIsCut) {
   write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
     {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.47, 0.150000001, 0]}}]})");

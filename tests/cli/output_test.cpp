@@ -43,6 +43,9 @@ TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
   expect_refusal(with({"-o", "out.json", "--report", "nowhere/r.json"}), "nowhere/r.json: ");
   expect_refusal(with({"-o", "box.stl"}), "box.stl: is named twice");
   expect_refusal(with({"-o", "out.json", "--tree", "./out.json"}), "out.json: is named twice");
+  std::filesystem::create_symlink("link.json", folder_ / "link.tree");  // to what is not there yet
+  expect_refusal(with({"-o", "link.json", "--tree", "link.tree"}), "link.tree: is named twice");
+  std::filesystem::remove(folder_ / "link.tree");
   expect_refusal(with({"-o", "."}), "is a folder");
   expect_refusal(with({"-o", "/dev/full"}), "/dev/full: exists and is not a regular file");
   expect_refusal(with({"-o", std::string(256, 'n')}), "the name is too long");

@@ -308,6 +308,21 @@ TEST_F(SceneFormats, GltfNodesMayBeDeep) {
                       "512 transforms"));
 }
 
+// A part of what is closed would be turned inside out.
+TEST_F(SceneFormats, MirroredMeshesAreTurnedOver) {
+  const Eigen::Matrix4d mirror = Eigen::Vector4d(-1, 2, 3, 1).asDiagonal();
+  const std::string gltf = replaced(test::gltf_text(cube_, Vector3d(1, 2, 3)), "{\"mesh\":0,",
+                                    "{\"mesh\":0,\"scale\":[-1,2,3],");
+  const auto volume = [&](const std::string& extension, const std::string& bytes) {
+    return mesh_report(read(extension, bytes)).volume;
+  };
+  EXPECT_NEAR(volume("dae", test::dae_text(cube_, mirror)), 6.0, 1e-12);
+  EXPECT_NEAR(volume("gltf", gltf), 6.0, 1e-12);
+  EXPECT_NEAR(
+      volume("3mf", test::threemf_bytes(test::threemf_model(cube_, "-1 0 0 0 2 0 0 0 3 0 0 0"))),
+      6.0, 1e-12);
+}
+
 // The vertices of all triangles in an order of their own.
 std::vector<Vector3d> corners_of(const TriangleMesh& mesh) {
   std::vector<Vector3d> corners;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace spherule::internal {
 
@@ -29,12 +30,17 @@ void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_
            double entry_error) {
   double size = rounding_distance(largest_coordinate(part), 1.0);
   double error = part.vertex_error + coordinate_error * size;
+  bool is_mirrored = false;
   for (std::size_t i = chain.size(); i-- > 0;) {
     const Affine& affine = chain[i];
     const double inflated = affine.gain * (size + error) + affine.offset.norm();
     error = affine.gain * error + (entry_error + 0x1p-50) * inflated;
     size = inflated;
     for (Eigen::Vector3d& v : part.vertices) v = affine.linear * v + affine.offset;
+    is_mirrored = is_mirrored != (affine.linear.determinant() < 0.0);
+  }
+  if (is_mirrored) {
+    for (Eigen::Vector3i& t : part.triangles) std::swap(t[1], t[2]);
   }
   part.vertex_error = error * (1.0 + 0x1p-40);
 }

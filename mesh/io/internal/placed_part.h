@@ -31,7 +31,9 @@ std::optional<Affine> affine_from(const Eigen::Matrix4d& matrix);
 
 // Moves the mesh by the last transform of the chain, then by the one before, up to the first, and
 // adds to its `vertex_error`. The coordinates are off by at most that and `coordinate_error` of the
-// largest, and the entries of a transform by at most `entry_error` of its norms.
+// largest, and the entries of a transform by at most `entry_error` of its norms. Where the chain
+// mirrors, the triangles are turned over (glTF 2.0, 3.7.4), so that what is closed keeps its
+// inside.
 void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_error,
            double entry_error);
 

@@ -151,12 +151,16 @@ TEST_F(TwoBars, LimitsShortOfContactAreProved) {
 
 TEST_F(TwoBars, ContactAtTheLimitAloneIsFound) {
   const double angle = contact_angle();
-  const BoxRobot robot = bars(-2.0, angle + 1e-6);
+  BoxRobot robot = bars(-2.0, angle + 1e-6);
+  robot.model.add_link("lamp", "post",
+                       {.name = "lean", .type = JointType::kRevolute, .lower = 0.1, .upper = 0.2});
+  robot.add_boxes(2, {box({0, 0, 5}, {1, 1, 6})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   ASSERT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
   EXPECT_GE(pairs.pairs()[0].witness[0], angle - 1e-9);
+  EXPECT_EQ(pairs.pairs()[0].witness[1], 0.1);  // which has nothing to do with it
   EXPECT_EQ(pairs.pairs()[0].smallest_gap, 0.0);
-  EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 0.01}));
+  EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 0.01, 0.1}));
 }
 
 TEST_F(TwoBars, AProofThatIsNearGoesOnBeyondTheBoxesOfOthers) {
