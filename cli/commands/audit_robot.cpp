@@ -7,6 +7,7 @@
 #include "cli/files/output.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
+#include "cli/options/check_number.h"
 #include "cli/options/length_options.h"
 #include "cli/options/robot_options.h"
 #include "cli/options/threads_option.h"
@@ -152,12 +153,24 @@ struct AuditInput {
   const RobotSpheres& spheres() const { return given.file.spheres; }
 };
 
+// --link is for files that name no link.
+void check_link(const AuditRobotArguments& arguments, const RobotModel& robot,
+                const RobotSpheres& spheres) {
+  const std::string& link = arguments.link;
+  if (link.empty()) return;
+  if (robot.find_link(link) < 0) throw Error("--link", "the robot has no link '" + link + "'");
+  if (spheres.links.size() != 1 || spheres.links.front().link != link) {
+    throw Error("--link", arguments.spheres + " names its links itself");
+  }
+}
+
 AuditInput read_input(const AuditRobotArguments& arguments) {
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   SphereInput given = read_spheres_of(robot, geometry, arguments.spheres,
                                       {.link = arguments.link, .level = arguments.level});
   const RobotSpheres& spheres = given.file.spheres;
+  check_link(arguments, robot.model, spheres);
   require_known_links(robot.model, arguments.spheres, spheres, arguments.ignores_unknown_links);
   const bool is_shrunk = has_shrinking_buffers(spheres);
   if (!arguments.repaired.empty()) check_repair(arguments, given.file, is_shrunk);
@@ -300,7 +313,8 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
   command->add_option("--link", arguments->link,
                       "Whose spheres they are, if the file names no link");
   command->add_option("--level", arguments->level,
-                      "Which level of a file with levels, 0 the coarsest (default: the finest)");
+                      "Which level of a file with levels, 0 the coarsest (default: the finest)")
+      ->check(check_not_negative);
   add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
   command

@@ -4,6 +4,7 @@
 #include "cli/files/output.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
+#include "cli/options/check_number.h"
 #include "cli/options/length_options.h"
 #include "cli/options/robot_options.h"
 #include "cli/options/shard.h"
@@ -333,7 +334,7 @@ void add_spheres(CLI::App& command, CheckArguments& arguments) {
   command
       .add_option("--effort", arguments.cover.effort,
                   "Without --spheres: how long to search for fewer spheres, as fit has it")
-      ->check(CLI::NonNegativeNumber);
+      ->check(check_not_negative);
   add_geometry_option(command, "Which of the robot's geometries stands for it (default: collision)",
                       arguments.geometry);
   add_package_option(command, arguments.packages);

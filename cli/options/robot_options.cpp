@@ -54,6 +54,9 @@ void set(LinkCoverOptions& options, const std::string& setting, const std::strin
   }
   if (length->has_value()) throw Error(subject, name + " is given twice");
   *length = lengths_in(value, subject, metres()).front();
+  if (name == "padding" && **length < 0.0) {
+    throw Error(subject, "'" + setting + "': must be at least 0");
+  }
 }
 
 }  // namespace

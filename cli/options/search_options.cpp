@@ -16,7 +16,7 @@ void add_search_options(CLI::App& command, const SearchOptions& options,
   command.add_option("--seed", options.seed, "Seed of everything random")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   auto* effort = command.add_option("--effort", options.effort, effort_means);
-  effort->check(CLI::NonNegativeNumber);
+  effort->check(check_not_negative);
   command
       .add_option_function<double>(
           "--seconds",
@@ -25,7 +25,7 @@ void add_search_options(CLI::App& command, const SearchOptions& options,
             options.effort = std::numeric_limits<int>::max();
           },
           seconds_mean)
-      ->check(CLI::PositiveNumber)
+      ->check(check_positive)
       ->check(check_not_negative)
       ->excludes(effort);
   add_threads_option(command, options.threads);

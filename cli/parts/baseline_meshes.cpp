@@ -2,6 +2,7 @@
 #include "cli/files/interruption.h"
 #include "cli/files/mesh_output.h"
 #include "cli/files/output.h"
+#include "cli/options/check_number.h"
 #include "cli/parts/baseline.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/progress.h"
@@ -44,7 +45,7 @@ void add_decimation(CLI::App& command, MeshArguments& arguments) {
   DecimationOptions& options = arguments.decimation;
   auto* triangles = command.add_option("--triangles", options.target_triangles,
                                        "How many triangles are wanted (default: few)");
-  triangles->check(CLI::PositiveNumber);
+  triangles->check(check_positive);
   auto* error = arguments.lengths.add(command, "--max-error", options.max_error,
                                       "Largest error as the library estimates it: no bound");
   // Without either, hardly anything would be left.
@@ -82,7 +83,7 @@ void add_decomposition(CLI::App& command, MeshArguments& arguments) {
   arguments.lengths.add(command, "--concavity", options.max_concavity,
                         "Concavity at which parts stay apart (default: 1 % of the box diagonal)");
   command.add_option("--parts", options.min_parts, "No fewer parts than this")
-      ->check(CLI::PositiveNumber);
+      ->check(check_positive);
 }
 
 BaselineMeshes run_decomposition(const TriangleMesh& mesh, const MeshArguments& arguments) {

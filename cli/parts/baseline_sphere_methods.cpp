@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/help/command_specification.h"
 #include "cli/modules/module.h"
+#include "cli/options/check_number.h"
 #include "cli/parts/baseline_spheres.h"
 #include "spheretree/error.h"
 #include "spheretree/refit.h"
@@ -145,7 +146,7 @@ void add_filling(CLI::App& command, SphereArguments& arguments) {
   arguments.lengths.add_positive(command, "--min-radius", options.min_radius,
                                  "No sphere is smaller (default: half of --step)");
   command.add_option("--spheres", options.max_spheres, "At most so many (default: 10000)")
-      ->check(CLI::PositiveNumber);
+      ->check(check_positive);
 }
 
 MadeSpheres run_filling(const TriangleMesh& mesh, const SphereArguments& arguments,
@@ -164,7 +165,7 @@ void add_medial(CLI::App& command, SphereArguments& arguments) {
   arguments.reduction = "best";
   CLI::Option* spheres =
       command.add_option("--spheres", arguments.medial.spheres, "At most so many (default: 512)");
-  spheres->check(CLI::PositiveNumber);
+  spheres->check(check_positive);
   CLI::Option* protrusion = arguments.lengths.add_positive(
       command, "--max-protrusion", arguments.medial.max_protrusion,
       "As few as protrude by no more than this, instead of a number of them");
@@ -238,7 +239,7 @@ MadeSpheres run_medial(const TriangleMesh& mesh, const SphereArguments& argument
 void add_octree(CLI::App& command, SphereArguments& arguments) {
   CLI::Option* depth =
       command.add_option("--depth", arguments.octree.depth, "Halvings of the cube around the mesh");
-  depth->check(CLI::PositiveNumber);
+  depth->check(check_positive);
   require_one(command, depth,
               arguments.lengths.add_positive(
                   command, "--max-error", arguments.octree.max_error,
@@ -281,7 +282,7 @@ void add_hubbard(CLI::App& command, SphereArguments& arguments) {
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->check(CLI::PositiveNumber);
+      ->check(check_positive);
   add_tree_file(command, arguments,
                 "Where a tree goes in which the spheres of a level enclose the finer ones");
   add_seed(command, arguments);

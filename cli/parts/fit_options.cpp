@@ -3,6 +3,7 @@
 
 #include "cli/files/in_file.h"
 #include "cli/help/command_specification.h"
+#include "cli/options/check_number.h"
 #include "cli/options/search_options.h"
 #include "simplifier/zone_file.h"
 #include "spheretree/sphere_file.h"
@@ -97,7 +98,7 @@ void add_method_options(CLI::App& command, FitArguments& arguments) {
       ->check(CLI::IsMember(placement_names()));
   command
       .add_option("--external-limit", options.external_limit, "Attempts of the random placement")
-      ->check(CLI::NonNegativeNumber);
+      ->check(check_not_negative);
   arguments.lengths.add(command, "--min-internal", options.min_internal_diameter,
                         "Diameter at which paper and packing seed a sphere (default: E / 2)");
   command

@@ -302,6 +302,11 @@ TEST_F(AuditRobotCommand, BadInput) {
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--max-error", "-1"}, "--max-error");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--threads", "-1"}, "--threads");
   expect_refusal({"audit-robot", "two.urdf", "good.yml", "--repair", "good.yml"}, "good.yml");
+  expect_refusal({"audit-robot", "two.urdf", "one.json", "--link", "amr"},
+                 "--link: the robot has no link 'amr'");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--link", "arm"},
+                 "--link: good.yml names its links itself");
+  expect_refusal({"audit-robot", "two.urdf", "good.yml", "--level", "-1"}, "and not negative");
   EXPECT_EQ(run({"audit-robot", "two.urdf", "one.json", "--link", "arm"}).exit_code, 1);
 }
 

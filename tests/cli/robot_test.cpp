@@ -341,6 +341,7 @@ TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
   refuse({"--link", "finger:max-error=-1"}, "link 'finger' max error: must be positive");
   refuse({"--link", "finger:max-error"}, "'max-error' is not NAME=VALUE");
   refuse({"--link", "finger:radius=1"}, "'radius' is none of max-error");
+  refuse({"--link", "finger:padding=-1"}, "--link finger: 'padding=-1': must be at least 0");
   refuse({"--link", "finger:padding=0,padding=0"}, "padding is given twice");
   refuse({"--link", "finger:zones=none.json"}, "none.json");
   refuse({"--tool-link", "thumb"}, "--tool-link: the robot has no link 'thumb'");
