@@ -312,8 +312,9 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
   add_inputs(*command, *arguments);
   command->add_option("--link", arguments->link,
                       "Whose spheres they are, if the file names no link");
-  command->add_option("--level", arguments->level,
-                      "Which level of a file with levels, 0 the coarsest (default: the finest)")
+  command
+      ->add_option("--level", arguments->level,
+                   "Which level of a file with levels, 0 the coarsest (default: the finest)")
       ->check(check_not_negative);
   add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
