@@ -52,7 +52,8 @@ struct ExternalOptions {
   // / 8 high. ExternalSpheres::grid_step is the one that was used.
   double grid_step = 0.0;
   static constexpr std::size_t kManyCells = std::size_t{1} << 24;
-  // Cells of the grid at most, 24 bytes each; from 1 to kMostCells.
+  // Cells of the grid at most, 24 bytes each (44 while borders of zones are followed); from 1 to
+  // kMostCells.
   static constexpr std::size_t kMostCells = std::size_t{1} << 27;
   std::size_t max_cells = kMostCells;
   // E: chooses the grid step and, with `keep_concave_edges`, the zones (0: those of E = D / 4).
@@ -99,7 +100,8 @@ struct ExternalSpheres {
   // it does, close to concave edges, corners and ends of passages, so that in samples on three
   // models S reaches into it by a third of a grid step at most (bench/README.md); that is no proof.
   // For the d of a zone the same share of d holds. At most `tightness` of D, unless memory ends
-  // first. 0 for the other placements, of which nothing is proved.
+  // first, or with zones the search along their borders does. 0 for the other placements, of which
+  // nothing is proved.
   double closing_slack = 0.0;
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;

@@ -67,13 +67,14 @@ void complete_levels(SimplifyOptions& options) {
   std::reverse(options.levels.begin(), options.levels.end());
 }
 
-// Before the long work: spheres of such sizes would be refused by their certificate.
+// Before the long work: spheres protrude by about as much, and their certificate would refuse them.
 void check_size(const SimplifyOptions& options, const MeshDistance& distance) {
-  constexpr double kLargest = 0x1p20;  // of the coordinates
+  constexpr double kLargest = 0x1p24;  // of the largest coordinate
   const double largest = internal::largest_coordinate(distance.box());
   const double error = options.levels.empty() ? options.max_error : options.levels.front();
   if (largest > 0.0 && error > kLargest * largest) {
-    throw Error("max error", "is more than a million times as large as the mesh: another unit?");
+    throw Error("max error",
+                "is more than 16 million times as far as the mesh reaches: another unit?");
   }
 }
 

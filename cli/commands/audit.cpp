@@ -235,7 +235,10 @@ int audit(const AuditArguments& arguments) {
   if (has_diameter) {
     blame_named_file(arguments.models.front(), "grid step", place);
   } else {
-    blame_file(arguments.spheres, place);
+    const auto is_of_file = [&](const Error& error) {
+      return !arguments.max_error || error.subject() != "max error";
+    };
+    blame_file_if(is_of_file, arguments.spheres, place);
   }
   const std::optional<ExternalSpheres>& external = proof->external();
   const Certificate certificate = blame_named_file(

@@ -150,8 +150,7 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
   command
       ->add_option("--seconds", arguments->options.seconds,
                    "Prove for so long at most; pairs that are left are unknown (default: no limit)")
-      ->check(check_positive)
-      ->check(check_not_negative);
+      ->check(check_positive);
   add_threads_option(*command, arguments->options.threads,
                      "without --seconds the result is the same");
   command->add_flag("--json", arguments->json, "Print the verdicts as JSON");

@@ -26,7 +26,6 @@ void add_search_options(CLI::App& command, const SearchOptions& options,
           },
           seconds_mean)
       ->check(check_positive)
-      ->check(check_not_negative)
       ->excludes(effort);
   add_threads_option(command, options.threads);
 }

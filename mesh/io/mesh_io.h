@@ -33,20 +33,20 @@ struct MeshReadOptions {
 };
 
 // Reads STL (text and binary), OBJ, PLY, OFF, DAE, 3MF, glTF and GLB, told apart by the extension.
-// All meshes of the file are joined, each under its node transforms, with polygons divided into
-// triangles, planar ones without adding to them (but 1e-9 of their area) or leaving any of them out
-// (one that crosses itself becomes a fan about its first corner); vertices that are equal bit for
-// bit are joined. Degenerate, duplicated, open, non-manifold, inverted and self-intersecting
-// triangles are kept (mesh_report() tells of them); points and lines are left out. A DAE file comes
-// out in metres, times `scale` (its own <unit> is applied), with the axes as they stand in it
-// (<up_axis> is ignored, as the tools of ROS do); one in which the <asset> of a part states another
-// unit or <up_axis> than that of the document is refused. The other formats come out in their own
-// numbers times `scale` (a 3MF file in its own unit, of which the default is the millimetre). Skins
-// and morph weights of DAE and glTF are placed as the file states them; what would be shown in
-// another way than the format specifies is refused, and so is a file that shows more than 2^25
-// vertices and triangles, or refers to its parts too often (docs/security.md). What a 3MF file
-// shows must be meshes: extensions of the format that it requires, or that add other shapes, are
-// refused.
+// All meshes of the file are joined, each under its node transforms, with its triangles turned over
+// where these mirror. Polygons are divided into triangles, planar ones without adding to them (but
+// 1e-9 of their area) or leaving any of them out (one that crosses itself becomes a fan about its
+// first corner); vertices that are equal bit for bit are joined. Degenerate, duplicated, open, non-
+// manifold, inverted and self-intersecting triangles are kept (mesh_report() tells of them); points
+// and lines are left out. A DAE file comes out in metres, times `scale` (its own <unit> is
+// applied), with the axes as they stand in it (<up_axis> is ignored, as the tools of ROS do); one
+// in which the <asset> of a part states another unit or <up_axis> than that of the document is
+// refused. The other formats come out in their own numbers times `scale` (a 3MF file in its own
+// unit, of which the default is the millimetre). Skins and morph weights of DAE and glTF are placed
+// as the file states them; what would be shown in another way than the format specifies is refused,
+// and so is a file that shows more than 2^25 vertices and triangles, or refers to its parts too
+// often (docs/security.md). What a 3MF file shows must be meshes: extensions of the format that it
+// requires, or that add other shapes, are refused.
 //
 // `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
 // transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and

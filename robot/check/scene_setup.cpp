@@ -150,7 +150,8 @@ class Preparation {
       std::visit(StandIn(), object.shape);
       scene_.attach(object.name, object.link, tree, object.link_from_object);
     }
-    // Regions are of spheres that are not known.
+    // Of regions the spheres are not known.
+    for (const SceneRegion& region : description_.regions) scene_.set_padding(region.body, 0.0);
     for (const SceneContact& contact : description_.allowed_contacts) {
       scene_.allow_contact(contact.body, contact.other);
     }

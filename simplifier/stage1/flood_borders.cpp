@@ -17,6 +17,8 @@ namespace {
 // Of s rho. Where a zone ends at rho from a surface, places of the sphere end within s rho of the
 // border, on either side of which three leaves of this edge tell them apart.
 constexpr double kFinestEdge = 0.36;
+// Of the cells.
+constexpr std::size_t kFew = 64;
 
 }  // namespace
 
@@ -31,16 +33,15 @@ FloodGrid::Refinement::Border FloodGrid::Refinement::border(const Entry& cell) c
   const LocalDiameter::Near around = grid_.diameter_.near(middle, nearby);
   if (around.least == around.greatest) return {Room::kFarFromBorders, around.least};
   const LocalDiameter::Near within = grid_.diameter_.near(middle, reach);
-  const double most = add_up(cell.clearance + grid_.widest_bounds_, reach);
-  if (most < (1.0 + share_) * within.least * (1.0 - 1e-9)) return {Room::kNone, within.least};
+  if (!may_have_room(cell, within.least)) return {Room::kNone, within.least};
   const bool has_room = least >= (1.0 + share_) * within.greatest;
-  return {has_room ? Room::kEverywhere : Room::kSome, within.least};
+  return {has_room ? Room::kEverywhere : Room::kPerhaps, within.least};
 }
 
 bool FloodGrid::Refinement::is_on_border(std::size_t i) const {
   const Entry& cell = cells()[i];
   if (cell.state == State::kRefined) return false;
-  return cell.reached ? border_[i].room == Room::kSome : is_possible_[i] != 0;
+  return cell.reached ? border_[i].room == Room::kPerhaps : is_possible_[i] != 0;
 }
 
 bool FloodGrid::Refinement::is_coarse(const Entry& cell) const {
@@ -80,7 +81,7 @@ std::vector<std::size_t> FloodGrid::Refinement::open_ways(std::vector<std::size_
 void FloodGrid::Refinement::follow_borders(const std::vector<std::size_t>& first) {
   std::vector<char> is_within(cells().size());
   parallel_for(0, first.size(), [&](std::size_t k) {
-    if (way_[first[k]] == Way::kThroughHeld) is_within[first[k]] = is_entered_from_within(first[k]);
+    if (way_[first[k]] == Way::kOnBorder) is_within[first[k]] = is_entered_from_within(first[k]);
   });
   // What lies behind leaves that a border is not in the way of is at the front.
   for (const std::size_t i : first) {
@@ -94,7 +95,7 @@ void FloodGrid::Refinement::follow_borders(const std::vector<std::size_t>& first
     std::vector<char> is_end(cells().size());
     for (std::size_t i = 0; i < cells().size(); ++i) {
       is_end[i] =
-          way_[i] == Way::kThroughHeld && (within_too || is_within[i] == 0) && is_coarse(cells()[i])
+          way_[i] == Way::kOnBorder && (within_too || is_within[i] == 0) && is_coarse(cells()[i])
               ? 1
               : 0;
     }
@@ -115,13 +116,15 @@ std::vector<std::size_t> FloodGrid::Refinement::find_entries(const std::vector<c
   std::vector<char> seen(cells().size());
   std::vector<std::size_t> behind;
   std::vector<std::size_t> waiting;
+  std::vector<std::size_t> between;
   const auto go_back = [&](std::size_t from) {
     bool is_behind = false;
     for_each_touching(from, true, [&](std::size_t other) {
-      if (way_[other] != Way::kThroughHeld || is_open_[other] == 0) return;
+      if (way_[other] != Way::kOnBorder || is_open_[other] == 0) return;
       is_behind = true;
       if (std::exchange(seen[other], 1) != 0) return;
       (is_end[other] != 0 ? entries_ : waiting).push_back(other);
+      if (is_end[other] == 0 && is_coarse(cells()[other])) between.push_back(other);
     });
     return is_behind;
   };
@@ -132,6 +135,10 @@ std::vector<std::size_t> FloodGrid::Refinement::find_entries(const std::vector<c
     const std::size_t i = waiting.back();
     waiting.pop_back();
     go_back(i);
+  }
+  // Few are near the end of a long way: it is not taken leaf by leaf.
+  if (!entries_.empty() && entries_.size() + between.size() < cells().size() / kFew) {
+    entries_.insert(entries_.end(), between.begin(), between.end());
   }
   return behind;
 }

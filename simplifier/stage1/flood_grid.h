@@ -71,11 +71,11 @@ class FloodGrid {
 
   // After flood(): halves cells where a sphere that is larger by a share might get to places that
   // are not reached yet, until it is proved that there are none, and floods on. Returns the share s
-  // for which this holds, `share` unless memory is short: wherever a sphere of radius (1 + s) rho
-  // can be moved from outside the cube, its centre lies in a reached cell, or in the sphere of a
-  // reached cell that touches its own. The proof is in flood_refinement.cpp. None if cells with own
-  // spheres prevent a proof for any s that holds without them, or if zones have borders that have
-  // to be followed.
+  // for which this holds, `share` unless halving ends before that is proved: wherever a sphere of
+  // radius (1 + s) rho can be moved from outside the cube, its centre lies in a reached cell, or in
+  // the sphere of a reached cell that touches its own. The proof is in flood_refinement.cpp. None
+  // if cells with own spheres prevent a proof for any s that holds without them, or with kOpen if
+  // zones prevent one.
   std::optional<double> tighten(double share, ZoneBorders borders, const Progress& progress);
 
   // After flood(): a sphere for each reached cell, its own or about its centre. Order: from coarse

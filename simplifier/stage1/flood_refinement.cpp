@@ -9,15 +9,15 @@
 // blocked ones separate from the outside, is not. The places of a leaf with a sphere of its own lie
 // in that sphere (sphere_of_places.h), so that none is on a face of it which the sphere does not
 // meet, or, of two such leaves, on their common face if their spheres do not intersect. The path of
-// the centre to a place of R passes possible leaves alone. Points of clearance above (1
-// - 1e-9) T form an open set, in which the path can be moved off edges and corners, so that it
-// passes from leaf to leaf through faces. So each leaf that intersects R belongs to the possible
-// leaves that are connected with the outside through faces of possible or reached leaves: *open*
-// leaves. Once each open leaf is reached, or lies as a whole in the sphere of a reached leaf that
-// touches it (is *held*), each place of R lies in the sphere of a reached leaf. That sphere's
-// centre is at most half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the
-// coarser of the two (of a coarse free cell: its sphere holds more than its leaf), unless it is a
-// leaf's own and so has a radius above 2 rho.
+// the centre to a place of R passes possible leaves alone. Where it passes an edge or a corner,
+// each leaf there holds the point and so is possible or reached: it can be taken to pass from leaf
+// to leaf through faces. So each leaf that intersects R belongs to the possible leaves that are
+// connected with the outside through faces of possible or reached leaves: *open* leaves. Once each
+// open leaf is reached, or lies as a whole in the sphere of a reached leaf that touches it (is
+// *held*), each place of R lies in the sphere of a reached leaf. That sphere's centre is at most
+// half a diagonal of its leaf and a diagonal of the open one away: 2.6 h, of the coarser of the two
+// (of a coarse free cell: its sphere holds more than its leaf), unless it is a leaf's own and so
+// has a radius above 2 rho.
 //
 // Where it is not so, those of the open leaves that are left and lie at the front of what is
 // reached are halved, with the possible leaves around them in two rings, so that what is reached
@@ -29,16 +29,17 @@
 // Ways may begin at any leaf that is reached or held, except where a zone of a smaller rho ends
 // beside leaves that have rho and not T: its leaves would be open and never reached, however fine.
 // If halving shows no end, the grid is made again and borders are followed (flood_borders.cpp):
-// ways then begin at reached leaves that are far from borders or hold places alone, and lead on
-// through what is uncertain, what is held, and reached leaves at borders that hold some place. A
-// path to R passes none but these after the last leaf at which ways begin, so that what no way
-// leads to holds no place of R. Leaves at which ways along a border begin are halved before what
-// these lead to, so that they end where the border has no place.
+// ways then begin at reached leaves that are far from borders or all of whose points have a
+// clearance of T, and lead on through what is uncertain, what is held, and reached leaves at
+// borders that may have such a point. A path to R passes none but these after the last leaf at
+// which ways begin, so that what no way leads to holds no place of R. Leaves at which ways along a
+// border begin are halved before what these lead to, so that they end where the border has no
+// place.
 //
-// Should halving end before (with zones by a bound on the growth of the grid, by memory, or by the
-// resolution of coordinates), a larger s is stated for which no open leaf is left, at most that of
-// a grid as it is that has no own spheres. If none is proved up to there and there are own spheres,
-// the grid is made anew without them.
+// Should halving end before (with zones by bounds on the growth of the grid and on rounds, by
+// memory, or by the resolution of coordinates), a larger s is stated for which no open leaf is
+// left, at most that of a grid as it is that has no own spheres. If none is proved up to there and
+// there are own spheres, the grid is made anew without them.
 
 #include "simplifier/stage1/flood_refinement.h"
 
@@ -63,9 +64,9 @@ constexpr int kRings = 2;
 // With zones the refined grid has at most so many more cells, or so many times those it was made
 // with: halving may prove nothing.
 constexpr std::size_t kMoreBesideZones = std::size_t{1} << 20;
-constexpr std::size_t kGrowthBesideZones = 2;
+constexpr std::size_t kGrowthBesideZones = 16;
 constexpr std::size_t kGrowthAlongBorders = 4;
-// Some dozen rounds show where ways along borders end, if they do.
+// Few take more than two dozen.
 constexpr int kMostRoundsAlongBorders = 40;
 // Halving shows no end once the grid has grown so much and there are leaves at the front of so much
 // of s rho: half of the edge below which a sphere gets on from leaf to leaf.
@@ -99,7 +100,7 @@ const std::vector<std::size_t>& FloodGrid::Refinement::lost() {
   std::vector<std::size_t> nodes = uncertain_;
   for (std::size_t i = 0; follows_borders_ && i < cells().size(); ++i) {
     if (way_[i] != Way::kNone || !is_on_border(i)) continue;
-    way_[i] = Way::kThroughHeld;
+    way_[i] = Way::kOnBorder;
     nodes.push_back(i);
   }
   std::vector<char> is_first(nodes.size());
@@ -211,11 +212,15 @@ bool FloodGrid::Refinement::is_at_boundary(const Entry& cell) const {
 bool FloodGrid::Refinement::is_possible(const Entry& cell) const {
   if (cell.reached || cell.state == State::kRefined) return false;
   if (!cell.finest && cell.state != State::kOwnSphere) return cell.state == State::kFree;
+  if (!may_have_room(cell, grid_.diameter_.least_radius())) return false;
   const double reach = grid_.half_diagonal(cell.level);
-  const double most = add_up(cell.clearance + grid_.widest_bounds_, reach);
-  const auto suffices = [&](double rho) { return most >= (1.0 + share_) * rho * (1.0 - 1e-9); };
-  if (!suffices(grid_.diameter_.least_radius())) return false;
-  return suffices(grid_.diameter_.near(grid_.center(cell), reach).least);
+  return may_have_room(cell, grid_.diameter_.near(grid_.center(cell), reach).least);
+}
+
+bool FloodGrid::Refinement::may_have_room(const Entry& cell, double rho) const {
+  const double most =
+      add_up(cell.clearance + grid_.widest_bounds_, grid_.half_diagonal(cell.level));
+  return most >= (1.0 + share_) * rho * (1.0 - 1e-9);
 }
 
 template <typename Counts>

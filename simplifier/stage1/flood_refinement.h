@@ -31,10 +31,11 @@ class FloodGrid::Refinement {
   bool refine();
 
  private:
-  // What room a leaf near a border of zones has for the larger sphere.
-  enum class Room : std::uint8_t { kFarFromBorders, kNone, kSome, kEverywhere };
-  // In lost(): through which leaves ways are followed from sources.
-  enum class Way : std::uint8_t { kNone, kUncertain, kThroughHeld };
+  // Where in a leaf near a border of zones the larger sphere has room.
+  enum class Room : std::uint8_t { kFarFromBorders, kNone, kPerhaps, kEverywhere };
+  // In lost(): the leaves through which ways are followed from sources. On a border, in short: one
+  // that is held, or reached and no source.
+  enum class Way : std::uint8_t { kNone, kUncertain, kOnBorder };
 
   const std::vector<Entry>& cells() const { return grid_.cells_; }
   // Whether halving goes on and on because of a border of a zone.
@@ -45,6 +46,8 @@ class FloodGrid::Refinement {
   bool is_at_boundary(const Entry& cell) const;
 
   bool is_possible(const Entry& cell) const;
+  // Whether the clearance may be (1 + share) rho somewhere in a leaf, up to the roundings.
+  bool may_have_room(const Entry& cell, double rho) const;
   // Whether the cell lies as a whole in the sphere of a leaf that touches it and counts.
   template <typename Counts>
   bool is_held_by(std::size_t cell, Counts counts) const;
@@ -63,7 +66,7 @@ class FloodGrid::Refinement {
     double rho = std::numeric_limits<double>::infinity();  // the least, if there may be less room
   };
   Border border(const Entry& cell) const;
-  // Whether the larger sphere may be in a leaf that is reached or held, and is no source.
+  // Of a leaf that is not uncertain: whether the larger sphere may be in it and it is no source.
   bool is_on_border(std::size_t cell) const;
   // Whether it is worth the cells to halve a leaf on a border.
   bool is_coarse(const Entry& cell) const;
@@ -101,8 +104,10 @@ class FloodGrid::Refinement {
   std::vector<char> is_possible_;       // of each cell
   std::vector<Border> border_;          // the same, where borders are followed
   std::vector<std::size_t> uncertain_;  // possible and not held, in order
-  std::vector<std::size_t> front_;      // those from which on cells are halved, some repeatedly
-  std::vector<std::size_t> entries_;    // on borders, to be halved before these
+  // The uncertain leaves from which on cells are halved; may name one twice, or one that is not
+  // open.
+  std::vector<std::size_t> front_;
+  std::vector<std::size_t> entries_;  // on borders, to be halved before these
   // Of each cell, in lost().
   std::vector<Way> way_;
   std::vector<char> is_open_;

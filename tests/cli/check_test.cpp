@@ -300,6 +300,9 @@ TEST_F(CheckTest, RefusesScenesBeforeTheRobotIsCovered) {
           "none.stl: ");
   refused(R"("attached": [{"name": "tool", "link": "hnad", "tree": {"file": "cell.json"}}])",
           "hnad: ");
+  refused(R"("regions": [{"body": "hnad", "name": "tip", "ball": {"center": [0, 0, 0],
+          "radius": 1}}])",
+          "hnad: ");
   refused(R"("robot": {"srdf": "none.srdf"})", "none.srdf: ");
   expect_refusal({"check", "huge.urdf", "cell.json", "path.csv", "--pairs", "none.pairs"}, "none.");
 }

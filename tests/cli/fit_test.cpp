@@ -319,7 +319,7 @@ TEST_F(FitTest, RefusalsOfThePlacementNameTheirCause) {
     EXPECT_FALSE(exists("no.json"));
   };
   refuse({"--min-external", "1e-9"}, "box.stl: grid step: too fine for a model");
-  refuse({"--max-error", "1e9"}, "max error: is more than a million times as large as the mesh");
+  refuse({"--max-error", "1e9"}, "max error: is more than 16 million times as far");
   refuse({"--keep-concave-edges", "--external", "random"}, "keep concave edges: needs");
 }
 

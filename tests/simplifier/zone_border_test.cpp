@@ -108,6 +108,23 @@ TEST(ZoneBorder, AtHalfADiameterFromASurfaceTheSearchEnds) {
   }
 }
 
+// Of a ball about a corner, beside which the way of the larger sphere along the border is long.
+TEST(ZoneBorder, ALongBorderIsFollowedToItsEnd) {
+  const Vector3d corner(1.8692347497298332, 1.8538621497110468, 0.87688810503765979);
+  const TriangleMesh mesh = joined(
+      joined(box_mesh({0.47556057437192245, 0.6539228147908045, 0.34505270004082561}, corner),
+             box_mesh({-0.413413374000901, -0.49420333538120342, -0.18814292867191337},
+                      {0.46895134757748086, 0.72679422644759906, 0.25346337387765083})),
+      box_mesh({0.080069186767595654, -0.14610412349455482, 0.0061430038422198409},
+               {0.60415015232072988, 0.55903746388034936, 0.99559841005211114}));
+  ExternalOptions options;
+  options.min_external_diameter = 1.0;
+  options.grid_step = 0.125;
+  options.tightness = 0.08;
+  options.zones = {{.shape = Sphere{corner, 0.5}, .min_external_diameter = 0.61536468020448976}};
+  EXPECT_EQ(place_external_spheres(mesh, options).closing_slack, 0.08);
+}
+
 // Two blocks with a slot between them that only a zone opens, and just so for the larger sphere,
 // and above one of them another zone that ends at half a diameter: that one is not to be reached,
 // the slot is.
