@@ -230,6 +230,10 @@ TEST_F(SceneFormats, Gltf) {
   EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[0]"), "two parents"));
   EXPECT_TRUE(refused("gltf", replaced(good, "[1]", "[7]"), "not there"));
   EXPECT_TRUE(refused("gltf", replaced(good, "\"2.0\"", "\"1.0\""), "version 2"));
+  EXPECT_TRUE(refused(
+      "gltf",
+      replaced(good, "{\"mesh\":0,", "{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"),
+      "a matrix beside"));
   // Minor versions may be read as older ones unless the file says from which on.
   const auto with_version = [&](const std::string& version) {
     return replaced(good, "\"2.0\"", version);

@@ -145,7 +145,12 @@ class GltfReader {
   }
 
   std::optional<Affine> transform_of(const Json& node) const {
-    if (node.contains("matrix")) return affine_of(document_.numbers(node, "matrix"));
+    if (node.contains("matrix")) {
+      if (node.contains("translation") || node.contains("rotation") || node.contains("scale")) {
+        document_.fail("a node with a matrix beside its other transforms");
+      }
+      return affine_of(document_.numbers(node, "matrix"));
+    }
     const std::vector<double> translation = vector_of(node, "translation", {0.0, 0.0, 0.0});
     const std::vector<double> rotation = vector_of(node, "rotation", {0.0, 0.0, 0.0, 1.0});
     const std::vector<double> scale = vector_of(node, "scale", {1.0, 1.0, 1.0});
