@@ -161,10 +161,7 @@ class TemporaryFile {
 }  // namespace
 
 fs::path written_file(const fs::path& path) {
-  const fs::path target = target_of(absolute_path(path)).path;
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(target, error);
-  return error ? target.lexically_normal() : canonical;
+  return target_of(absolute_path(path)).path;
 }
 
 void check_writable(const fs::path& path) {

@@ -30,9 +30,8 @@ namespace spherule {
 // ignored; then that is an Error, too.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-// The file that write_file_atomically(path, ...) would replace or make: from the root on, links
-// followed. Two paths name one file if these are equal. Throws Error naming the path if it names no
-// file that could be written.
+// The file that write_file_atomically(path, ...) would replace or make: from the root on, the last
+// part no symbolic link. Throws Error naming the path if it names no file that could be written.
 std::filesystem::path written_file(const std::filesystem::path& path);
 
 // Throws the Error that write_file_atomically() would throw before its first byte: for a folder

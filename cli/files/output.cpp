@@ -35,7 +35,7 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
       throw Error(output.string(), "no such folder; make it first");
     if (fs::is_directory(output, error)) throw Error(output.string(), "is a folder");
     write_uninterrupted([&] { check_writable(output); });
-    if (!taken.insert(written_file(output)).second) {
+    if (!taken.insert(place_of(written_file(output))).second) {
       throw Error(output.string(), "is named twice, as input or output");
     }
   }

@@ -4,7 +4,6 @@
 
 #include "simplifier/stage1/flood_refinement.h"
 #include "simplifier/support/parallel.h"
-#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -17,7 +16,7 @@ namespace {
 // Of s rho. Where a zone ends at rho from a surface, places of the sphere end within s rho of the
 // border, on either side of which three leaves of this edge tell them apart.
 constexpr double kFinestEdge = 0.36;
-// Of the cells.
+// A way is halved as a whole where it is fewer than one in so many of the cells.
 constexpr std::size_t kFew = 64;
 
 }  // namespace

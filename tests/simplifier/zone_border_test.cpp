@@ -42,6 +42,12 @@ ExternalSpheres placed(const TriangleMesh& mesh, double diameter, double step,
   return place_external_spheres(mesh, options);
 }
 
+bool is_in_a_sphere(const ExternalSpheres& external, const Vector3d& place) {
+  return std::ranges::any_of(external.spheres, [&](const Sphere& sphere) {
+    return (sphere.center - place).norm() < sphere.radius;
+  });
+}
+
 // How many of the places in zones that a sphere gets to which is larger by the slack lie in the
 // box, each in an external sphere.
 std::size_t places_in_zones(const TriangleMesh& mesh, const ExternalSpheres& external,
@@ -65,9 +71,7 @@ std::size_t places_in_zones(const TriangleMesh& mesh, const ExternalSpheres& ext
       .for_each_reached([&](const Vector3d& place) {
         if (external.box.exteriorDistance(place) > 0.0) return;
         count += std::ranges::any_of(zones, in_zone(place)) ? 1 : 0;
-        EXPECT_TRUE(std::ranges::any_of(external.spheres, [&](const Sphere& sphere) {
-          return (sphere.center - place).norm() < sphere.radius;
-        })) << place.transpose();
+        EXPECT_TRUE(is_in_a_sphere(external, place)) << place.transpose();
       });
   return count;
 }
@@ -152,10 +156,7 @@ TEST(ZoneBorder, BesideSuchAZoneNarrowWaysAreFound) {
     for (double y = 0.5; y < 4.0; y += 0.25) {
       for (double z = depth + 0.3; z < 4.0; z += 0.25) {
         const Vector3d place = at(4.0 + kSlot / 2.0, y, z);
-        EXPECT_TRUE(std::ranges::any_of(
-            external.spheres,
-            [&](const Sphere& sphere) { return (sphere.center - place).norm() < sphere.radius; }))
-            << n << ": " << y << " " << z;
+        EXPECT_TRUE(is_in_a_sphere(external, place)) << n << ": " << y << " " << z;
       }
     }
   }
