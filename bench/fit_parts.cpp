@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/fit_parts.h"
 
+#include "base/error.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 
 #include <chrono>
 #include <cstdio>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How fast is a collision check of the paper's work cell, engine by engine, and is the answer
 // right? See bench/README.md for the protocol.
+#include "base/error.h"
 #include "bench/fit_parts.h"
 #include "bench/measure.h"
 #include "bench/methods.h"
@@ -11,7 +12,6 @@
 #include "bench/report.h"
 #include "bench/scene_files.h"
 #include "bench/studies/study.h"
-#include "spheretree/error.h"
 
 #include <cstdio>
 #include <filesystem>

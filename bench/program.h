@@ -3,8 +3,8 @@
 
 // What the programs of bench/ have in common.
 
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
+#include "base/error.h"
+#include "base/text.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/real_models.h"
 
-#include "mesh/io/mesh_io.h"
+#include "io/mesh_io.h"
 
 #include <Eigen/Geometry>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/workload.h"
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
 #include <filesystem>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/report.h"
 
+#include "base/files.h"
 #include "bench/methods.h"
 #include "bench/studies/report.h"
-#include "spheretree/atomic_file.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,8 +2,8 @@
 #include "bench/scene_files.h"
 
 #include "bench/placed_cell.h"
-#include "mesh/io/mesh_io.h"
-#include "spheretree/sphere_file.h"
+#include "io/mesh_io.h"
+#include "io/sphere_file.h"
 
 namespace spherule {
 

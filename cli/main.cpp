@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/wrong_file.h"
 #include "cli/help/help.h"
@@ -6,7 +7,6 @@
 #include "cli/memory_reserve.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/message.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

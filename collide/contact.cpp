@@ -2,8 +2,8 @@
 #include "collide/contact.h"
 
 #include "collide/meshes/listed_triangles.h"
-#include "collide/search/sphere_leaves.h"
-#include "collide/search/tree_pair.h"
+#include "collide/search/nearest_first.h"
+#include "collide/search/traversal.h"
 
 #include <algorithm>
 #include <queue>

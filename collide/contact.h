@@ -19,7 +19,7 @@
 // @endcode
 
 #include "collide/collide.h"
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 
 #include <Eigen/Core>
 

@@ -15,8 +15,8 @@
 // assert(spherule::point_cloud_tree(points, 0.05).spheres().size() == 3);
 // @endcode
 
+#include "geometry/sphere.h"
 #include "spheretree/build.h"
-#include "spheretree/sphere.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/sweep.h"
 
+#include "base/error.h"
+#include "collide/collide.h"
 #include "collide/motion/free_time.h"
 #include "collide/motion/gap_rate.h"
-#include "collide/within.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <array>
@@ -180,6 +180,10 @@ SweepResult sweep(const SphereTree& a, const Motion& motion_a, const SphereTree&
     throw Error("sweep", "the resolution is not a number from 2^-40 to 1");
   }
   return Sweep(a, motion_a, b, motion_b, request).run();
+}
+
+void require_resolution(double resolution) {
+  if (!(resolution > 0.0)) throw Error("resolution", "it is not above zero");
 }
 
 }  // namespace spherule

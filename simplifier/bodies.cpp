@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/bodies.h"
 
-#include "simplifier/support/stopwatch.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/stopwatch.h"
+#include "base/threads.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

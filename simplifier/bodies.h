@@ -17,11 +17,11 @@
 // assert(fits[0].spheres.size() == fits[1].spheres.size());
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/pose.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "io/sphere_file.h"
 #include "simplifier/simplify.h"
-#include "spheretree/pose.h"
-#include "spheretree/sphere.h"
-#include "spheretree/sphere_file.h"
 
 #include <cstddef>
 #include <optional>

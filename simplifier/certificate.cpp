@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/certificate.h"
+#include "simplifier/types/certificate.h"
 
-#include "mesh/mesh_distance.h"
-#include "mesh/shells/closed_shells.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/shells.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/proof/protrusion.h"
-#include "simplifier/proof/volume_ratio.h"
-#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/solid/usable_external.h"
-#include "simplifier/support/thread_limit.h"
-#include "simplifier/support/usable_spheres.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
-#include "spheretree/rounding_mode.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>

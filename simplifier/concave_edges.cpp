@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/concave_edges.h"
 
-#include "mesh/geometry/edge_uses.h"
-#include "mesh/geometry/weld.h"
-#include "simplifier/internal/sharp_edge.h"
+#include "geometry/self_intersection.h"
+#include "geometry/weld.h"
 
 #include <algorithm>
 #include <array>

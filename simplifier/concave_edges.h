@@ -14,9 +14,10 @@
 // assert(zones.size() == 1 && zones[0].min_external_diameter < 1.0);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/zones.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/zones.h"
 
+#include <numbers>
 #include <vector>
 
 namespace spherule {
@@ -48,3 +49,11 @@ struct ConcaveEdgeOptions {
 std::vector<Zone> concave_edge_zones(const TriangleMesh& mesh, const ConcaveEdgeOptions& options);
 
 }  // namespace spherule
+
+namespace spherule::internal {
+
+// An edge is sharp if the faces beside it form an angle of less than this, 150 degrees.
+inline constexpr double kSharpAngle = 150.0 * (std::numbers::pi / 180.0);
+inline constexpr double kCosineOfHalfSharp = 0.2588190451025207;
+
+}  // namespace spherule::internal

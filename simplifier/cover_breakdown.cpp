@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cover_breakdown.h"
 
-#include "mesh/geometry/point_grid.h"
-#include "mesh/mesh_distance.h"
-#include "simplifier/internal/sharp_edge.h"
+#include "base/threads.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/weld.h"
+#include "simplifier/concave_edges.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/solid/cube.h"
-#include "simplifier/solid/usable_external.h"
-#include "simplifier/stage2/cover_checks.h"
-#include "simplifier/stage2/local_error.h"
+#include "simplifier/solid/sphere_hierarchy.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/stage2/solid_cells.h"
-#include "simplifier/support/parallel.h"
-#include "simplifier/support/thread_limit.h"
-#include "simplifier/support/usable_spheres.h"
 
 #include <Eigen/Geometry>
 

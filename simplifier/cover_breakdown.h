@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/simplifier/cover_breakdown.h>
-// #include <spherule/simplifier/cover.h>
+// #include <spherule/simplifier/types/cover.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -17,9 +17,9 @@
 // assert(parts.edges > 0 && parts.roles.size() == cover.spheres.size());
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/external_spheres.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/external_spheres.h"
 
 #include <cstddef>
 #include <span>

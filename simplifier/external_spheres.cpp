@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/external_spheres.h"
+#include "simplifier/types/external_spheres.h"
 
-#include "mesh/mesh_distance.h"
-#include "mesh/mesh_report.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/mesh_report.h"
 #include "simplifier/concave_edges.h"
 #include "simplifier/internal/stages.h"
-#include "simplifier/solid/box_cell.h"
-#include "simplifier/stage1/concave_fit_spheres.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/stage1/flood_grid.h"
-#include "simplifier/stage1/local_diameter.h"
 #include "simplifier/stage1/random_placement.h"
-#include "simplifier/stage1/too_many_cells.h"
-#include "simplifier/support/parallel.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
-#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/option_record.h"
 
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/text.h"
 #include "simplifier/zone_file.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
-#include "spheretree/text/text.h"
 
 #include <algorithm>
 #include <array>

@@ -14,10 +14,10 @@
 // assert(spherule::method_names()[0] == "cover");
 // @endcode
 
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
-#include "simplifier/simplify_options.h"
-#include "spheretree/sphere_file.h"
+#include "io/sphere_file.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplify_options.h"
 
 #include <map>
 #include <span>

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/repair.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "mesh/mesh_distance.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/solid/usable_external.h"
-#include "simplifier/stage2/cover_checks.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/stage2/cover_fitter.h"
-#include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/stage2/solid_cells.h"
-#include "simplifier/stage2/sphere_inflation.h"
-#include "simplifier/support/parallel.h"
-#include "simplifier/support/thread_limit.h"
-#include "simplifier/support/usable_spheres.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
-#include "spheretree/rounding_mode.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -18,11 +18,11 @@
 // assert(repair.spheres.size() == 1 + repair.added);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
-#include "simplifier/zones.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/zones.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "mesh/mesh_report.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/stopwatch.h"
+#include "base/threads.h"
+#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/internal/stages.h"
-#include "simplifier/support/stopwatch.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "simplifier/option_record.h"
+#include "simplifier/types/simplification.h"
+#include "simplifier/types/simplify_options.h"
+#include "spheretree/build.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iomanip>
 #include <limits>
+#include <optional>
+#include <ostream>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -190,6 +198,93 @@ double proof_resolution(double max_error, double diagonal) {
   const double finest = CertifyOptions{}.resolution;
   if (!(max_error > 0.0 && diagonal > 0.0)) return finest;
   return std::min(finest, kResolutionOfError * max_error / diagonal);
+}
+
+namespace {
+
+constexpr double kDefaultError = 0.01;    // of the box diagonal
+constexpr double kDefaultDiameter = 4.0;  // of E: 90-degree edges need spheres of radius 2 E
+
+}  // namespace
+
+void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh) {
+  if (options.max_error == 0.0) {
+    options.max_error = kDefaultError * internal::box_of(mesh).diagonal().norm();
+  }
+  if (options.min_external_diameter == 0.0) {
+    options.min_external_diameter = kDefaultDiameter * options.max_error;
+  }
+}
+
+double tool_diameter(std::span<const Sphere> tool) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Sphere& sphere : tool) {
+    if (!is_usable(sphere)) throw Error("tool", "a sphere is not usable");
+    least = std::min(least, sphere.radius);
+  }
+  if (tool.empty()) throw Error("tool", "holds no sphere");
+  if (least == 0.0) throw Error("tool", "has a sphere of radius 0: nothing is small enough for it");
+  return 2.0 * least;
+}
+
+ExternalOptions external_options(const SimplifyOptions& options) {
+  return {.placement = options.external,
+          .min_external_diameter = options.min_external_diameter,
+          .padding = options.padding,
+          .max_error = options.max_error > 0.0 ? options.max_error
+                                               : options.min_external_diameter / kDefaultDiameter,
+          .tightness = options.tightness,
+          .zones = options.zones,
+          .keep_concave_edges = options.keep_concave_edges,
+          .limit = options.external_limit,
+          .seed = options.seed,
+          .threads = options.threads,
+          .progress = options.progress};
+}
+
+std::string broken_promises(const Simplification& simplification) {
+  const Certificate& certificate = simplification.certificate;
+  const SimplifyOptions& options = simplification.options;
+  std::ostringstream out;
+  out << std::setprecision(12);
+  if (!certificate.covered) out << "the spheres are not proved to cover";
+  // A least radius may force spheres to protrude further.
+  if (options.min_radius > 0.0) return out.str();
+  const auto begin = [&](double most) -> std::ostream& {
+    return out << (out.str().empty() ? "the spheres are not proved" : ", nor")
+               << " to protrude by at most " << most;
+  };
+  const std::optional<double>& protrusion = certificate.protrusion_over_simplified_max;
+  if (!protrusion || !(*protrusion <= options.max_error)) {
+    begin(options.max_error) << " from the simplified solid";
+    if (protrusion) out << ", only by at most " << *protrusion;
+  }
+  for (std::size_t i = 0; i < options.zones.size(); ++i) {
+    const std::optional<double>& error = options.zones[i].max_error;
+    if (!error) continue;
+    const bool known = i < certificate.protrusion_in_zones.size();
+    if (known && certificate.protrusion_in_zones[i] <= *error) continue;
+    begin(*error) << " in zone " << i;
+    if (known) out << ", only by at most " << certificate.protrusion_in_zones[i];
+  }
+  for (const CoverLevel& level : simplification.levels) {
+    if (level.protrusion <= level.max_error) continue;
+    begin(level.max_error) << " in a level, only by at most " << level.protrusion;
+  }
+  return out.str();
+}
+
+SphereTree sphere_tree(const Simplification& simplification) {
+  const std::vector<Sphere>& spheres = simplification.cover.spheres;
+  if (simplification.levels.empty()) return build_tree(spheres);
+  return level_tree(spheres, simplification.levels).tree;
+}
+
+SphereFile sphere_file(const Simplification& simplification, double scale) {
+  return {.spheres = simplification.cover.spheres,
+          .certificate = record(simplification.certificate),
+          .options = option_record(simplification.options, scale),
+          .interrupted = simplification.interrupted};
 }
 
 }  // namespace spherule

@@ -18,12 +18,12 @@
 // assert(tree.spheres().size() == fit.cover.spheres.size());
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/option_record.h"
-#include "simplifier/simplification.h"
-#include "simplifier/simplify_options.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
+#include "simplifier/types/simplify_options.h"
 
 #include <cstddef>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/zone_file.h"
 
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/parse_json.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/json.h"
 
 #include <nlohmann/json.hpp>
 

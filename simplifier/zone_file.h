@@ -12,7 +12,7 @@
 // assert(spherule::parse_zones(spherule::zones_text(zones), "zones") == zones);
 // @endcode
 
-#include "simplifier/zones.h"
+#include "simplifier/types/zones.h"
 
 #include <filesystem>
 #include <span>

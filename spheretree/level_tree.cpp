@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/level_tree.h"
 
-#include "spheretree/error.h"
-#include "spheretree/moved_from.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/moved_from.h"
+#include "base/rounding.h"
 
 #include <queue>
 #include <string>

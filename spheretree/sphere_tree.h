@@ -19,7 +19,7 @@
 // assert(leaves == spheres.size());
 // @endcode
 
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/tree_file.h"
 
-#include "spheretree/atomic_file.h"
-#include "spheretree/crc64.h"
-#include "spheretree/error.h"
+#include "base/crc64.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/rounding.h"
 #include "spheretree/internal/file_content.h"
-#include "spheretree/rounding_mode.h"
 
 #include <bit>
 #include <concepts>

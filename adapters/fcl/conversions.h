@@ -14,9 +14,9 @@
 // assert(spherule::fcl_api::to_fcl(pose).isApprox(shifted));
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "spheretree/error.h"
-#include "spheretree/pose.h"
+#include "base/error.h"
+#include "geometry/pose.h"
+#include "geometry/triangle_mesh.h"
 
 #include <fcl/common/types.h>
 #include <fcl/geometry/bvh/BVH_model.h>

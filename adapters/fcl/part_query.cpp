@@ -2,9 +2,8 @@
 #include "adapters/fcl/part_query.h"
 
 #include "collide/collide.h"
-#include "collide/distance.h"
-#include "collide/mesh_contact.h"
-#include "mesh/point_triangle.h"
+#include "collide/meshes/mesh_contact.h"
+#include "geometry/point_triangle.h"
 
 #include <algorithm>
 #include <array>

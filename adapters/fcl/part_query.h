@@ -16,8 +16,8 @@
 // @endcode
 
 #include "adapters/fcl/sphere_model.h"
-#include "collide/distance.h"
-#include "spheretree/pose.h"
+#include "collide/collide.h"
+#include "geometry/pose.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/sphere_model.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 
 #include <string>
 

@@ -16,9 +16,9 @@
 // @endcode
 
 #include "adapters/fcl/conversions.h"
-#include "collide/mesh_contact.h"
+#include "base/moved_from.h"
+#include "collide/meshes/mesh_contact.h"
 #include "simplifier/simplify.h"
-#include "spheretree/moved_from.h"
 #include "spheretree/sphere_tree.h"
 
 #include <fcl/geometry/collision_geometry.h>

@@ -30,7 +30,7 @@
 // @endcode
 
 #include "adapters/ompl/robot_states.h"
-#include "collide/edge.h"
+#include "collide/sweep.h"
 
 #include <algorithm>
 #include <atomic>

@@ -22,9 +22,9 @@
 // assert(configuration == std::vector<double>{0.5});
 // @endcode
 
+#include "base/error.h"
 #include "robot/check/robot_checker.h"
 #include "robot/model/shortest_motion.h"
-#include "spheretree/error.h"
 
 #include <cmath>
 #include <cstddef>

@@ -7,7 +7,6 @@
 
 #include "spheretree/build.h"
 #include "spheretree/check.h"
-#include "spheretree/refit.h"
 
 #include <benchmark/benchmark.h>
 

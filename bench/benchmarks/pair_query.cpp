@@ -3,7 +3,6 @@
 // kinematics? Counters: node tests and leaf tests a query, the share of queries that collide.
 
 #include "collide/collide.h"
-#include "collide/distance.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 

@@ -7,8 +7,8 @@
 #include "bench/checkers/tree_checker.h"
 #include "bench/scenes/program.h"
 #include "bench/workload.h"
+#include "geometry/enclosing_sphere.h"
 #include "spheretree/build.h"
-#include "spheretree/enclosing_sphere.h"
 
 #include <benchmark/benchmark.h>
 

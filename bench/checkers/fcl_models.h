@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/scenes/mesh_facts.h"
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 

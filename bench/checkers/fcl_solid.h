@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/triangle_mesh.h"
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
+#include "geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>
 

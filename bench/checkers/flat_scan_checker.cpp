@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/checkers/flat_scan_checker.h"
 
+#include "base/error.h"
 #include "bench/checkers/flat_scan/kernel.h"
 #include "bench/checkers/scene_reach.h"
 #include "bench/scenes/turn_between.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cmath>

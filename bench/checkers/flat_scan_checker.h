@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/workload.h"
-#include "collide/instruction_set.h"
+#include "collide/search/instruction_set.h"
 
 #include <memory>
 

@@ -2,7 +2,7 @@
 #include "bench/checkers/tree_checker.h"
 
 #include "collide/collide.h"
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -3,13 +3,13 @@
 // model closed at a diameter, judged by what shares no code with stage 1 (protrusion_judge.h), with
 // grids of so many steps a diameter. Of models and spheres as named (the scale is the file's);
 // without any, of those of SPHERULE_MODELS, whose spheres are fitted here, at D and at D + slack.
+#include "base/error.h"
 #include "bench/closing/protrusion_judge.h"
 #include "bench/program.h"
-#include "mesh/io/mesh_io.h"
+#include "geometry/sphere.h"
+#include "io/mesh_io.h"
+#include "io/sphere_file.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
-#include "spheretree/sphere.h"
-#include "spheretree/sphere_file.h"
 
 #include <Eigen/Geometry>
 

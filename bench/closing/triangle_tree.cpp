@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/closing/triangle_tree.h"
 
-#include "spheretree/median_split.h"
+#include "geometry/median_split.h"
 
 #include <algorithm>
 #include <cmath>

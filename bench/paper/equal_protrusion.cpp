@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/equal_protrusion.h"
 
+#include "base/error.h"
 #include "bench/paper/figures.h"
 #include "bench/scenes/shapes.h"
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "simplifier/baseline/made_conservative.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/paper/sphere_methods.h"
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/fcl_convex_checker.h"
 
+#include "base/error.h"
 #include "bench/checkers/fcl_models.h"
 #include "bench/scenes/mesh_facts.h"
 #include "bench/scenes/solids.h"
 #include "simplifier/baseline/convex_hull.h"
-#include "spheretree/error.h"
 
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/math/bv/OBBRSS.h>

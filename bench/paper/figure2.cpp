@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/figure2.h"
 
+#include "base/error.h"
 #include "bench/fit_parts.h"
 #include "bench/scenes/solids.h"
 #include "simplifier/baseline/sphere_packing.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
 
 #include <cstdio>
 #include <utility>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cover.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/cover.h"
 
 #include <string>
 #include <vector>

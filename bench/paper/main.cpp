@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table and the figures of the paper, made again. See bench/README.md.
+#include "base/error.h"
 #include "bench/fit_parts.h"
 #include "bench/paper/page.h"
 #include "bench/paper/pictures.h"
 #include "bench/paper/report.h"
 #include "bench/program.h"
-#include "spheretree/error.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/page.h"
 
+#include "base/files.h"
 #include "bench/paper/machine.h"
-#include "robot/files/internal/xml_file.h"
-#include "spheretree/atomic_file.h"
+#include "robot/files/xml_file.h"
 
 #include <cstddef>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/report.h"
 
+#include "base/files.h"
 #include "bench/paper/machine.h"
-#include "spheretree/atomic_file.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/representations.h"
 
+#include "base/error.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/checkers/tree_checker.h"
 #include "bench/paper/fcl_convex_checker.h"
@@ -12,7 +13,6 @@
 #include "simplifier/baseline/voxelisation.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cstdio>

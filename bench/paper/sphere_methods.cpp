@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/sphere_methods.h"
 
-#include "mesh/mesh_report.h"
+#include "geometry/mesh_report.h"
 #include "simplifier/baseline/hubbard_spheres.h"
 #include "simplifier/baseline/level_set_packing.h"
 #include "simplifier/baseline/medial_axis.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/triangle_mesh.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 
 #include <functional>
 #include <string>

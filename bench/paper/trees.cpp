@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/trees.h"
 
+#include "base/error.h"
 #include "bench/clock.h"
 #include "bench/paper/figures.h"
 #include "bench/scenes/shapes.h"
@@ -11,7 +12,6 @@
 #include "simplifier/baseline/octree_spheres.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cstdint>

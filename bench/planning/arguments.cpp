@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/arguments.h"
 
+#include "base/error.h"
 #include "bench/program.h"
-#include "spheretree/error.h"
 
 #include <ompl/util/Console.h>
 

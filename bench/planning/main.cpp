@@ -2,6 +2,7 @@
 // Does a planner gain by spheres, and does it lose solutions? And how many process points are
 // judged a second? In the paper's work cell; see bench/README.md.
 //   spherule_planning [--out DIR] [--effort N] [--problems N]
+#include "base/error.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/checkers/tree_checker.h"
 #include "bench/clock.h"
@@ -10,7 +11,6 @@
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/report.h"
 #include "bench/scenes/torch.h"
-#include "spheretree/error.h"
 
 #include <cstdio>
 

@@ -4,6 +4,8 @@
 // meshes. In the cell of bench/scenes, or with the real robot and torch where SPHERULE_MODELS names
 // a folder of models.
 //   spherule_plan_motion [--out DIR] [--effort N]
+#include "base/error.h"
+#include "base/files.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/checkers/tree_checker.h"
 #include "bench/fit_parts.h"
@@ -15,8 +17,6 @@
 #include "bench/program.h"
 #include "bench/real_models.h"
 #include "bench/scenes/torch.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 
 #include <cstdio>
 #include <filesystem>

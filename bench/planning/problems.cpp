@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/problems.h"
 
+#include "base/error.h"
 #include "bench/planning/path_check.h"
 #include "bench/planning/planning_cell.h"
 #include "bench/studies/random_numbers.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cstdint>

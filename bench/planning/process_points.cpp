@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/planning/process_points.h"
 
+#include "base/error.h"
 #include "bench/scenes/inverse_kinematics.h"
 #include "bench/scenes/program.h"
 #include "bench/scenes/spherical_wrist.h"
 #include "bench/scenes/turn_between.h"
 #include "bench/scenes/weld_pass.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 
 #include <Eigen/Geometry>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/arm.h"
 
-#include "mesh/io/mesh_io.h"
-#include "robot/check/sample_collisions.h"
-#include "robot/cover/link_bodies.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "geometry/enclosing_sphere.h"
+#include "io/mesh_io.h"
+#include "robot/check/robot_collision.h"
+#include "robot/cover/link_mesh.h"
 #include "robot/files/urdf.h"
 #include "spheretree/build.h"
-#include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
 
 #include <array>
 #include <memory>

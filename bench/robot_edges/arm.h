@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/mesh_contact.h"
-#include "mesh/triangle_mesh.h"
+#include "collide/meshes/mesh_contact.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
-#include "spheretree/sphere.h"
 
 #include <cstddef>
 #include <filesystem>

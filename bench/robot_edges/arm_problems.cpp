@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/arm_problems.h"
 
+#include "base/error.h"
 #include "bench/robot_edges/edges.h"
-#include "spheretree/error.h"
 
 #include <utility>
 

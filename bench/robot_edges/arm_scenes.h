@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/primitive.h"
-#include "mesh/triangle_mesh.h"
-#include "spheretree/pose.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
+#include "geometry/triangle_mesh.h"
 
 #include <cstddef>
 #include <string>

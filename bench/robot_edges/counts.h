@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/robot_edges/times.h"
-#include "collide/edge.h"
+#include "collide/sweep.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/flat_arm.h"
 
-#include "collide/solid_fields.h"
+#include "collide/solids/solid_fields.h"
 #include "robot/model/kinematics.h"
 
 #include <variant>

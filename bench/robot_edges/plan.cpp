@@ -6,6 +6,7 @@
 // contact.
 //   SPHERULE_MODELS=DIR spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]
 
+#include "base/error.h"
 #include "bench/planning/problem_study.h"
 #include "bench/program.h"
 #include "bench/robot_edges/arm.h"
@@ -13,7 +14,6 @@
 #include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/fcl_arm.h"
 #include "bench/robot_edges/robot_scenes.h"
-#include "spheretree/error.h"
 
 #include <cstdio>
 #include <ompl/util/Console.h>

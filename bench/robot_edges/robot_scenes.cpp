@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/robot_scenes.h"
 
+#include "collide/meshes/solid_mesh.h"
 #include "collide/point_cloud.h"
-#include "collide/solid_mesh.h"
 
 #include <memory>
 

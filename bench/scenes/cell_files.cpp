@@ -8,7 +8,7 @@
 #include "bench/scenes/table.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
-#include "mesh/io/mesh_io.h"
+#include "io/mesh_io.h"
 
 #include <Eigen/Geometry>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/program.h"
 
+#include "base/error.h"
 #include "bench/scenes/inverse_kinematics.h"
 #include "bench/scenes/table.h"
 #include "bench/scenes/weld_pass.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <random>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/scenes/robot.h"
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
 #include <cstddef>
 #include <cstdint>

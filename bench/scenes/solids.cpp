@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/solids.h"
 
+#include "base/error.h"
 #include "bench/scenes/turn_between.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/scenes/polygon.h"
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>
 

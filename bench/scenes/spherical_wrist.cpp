@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/spherical_wrist.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 
 #include <Eigen/Geometry>
 

@@ -5,8 +5,7 @@
 #include "bench/studies/random_numbers.h"
 #include "bench/studies/study.h"
 #include "collide/collide.h"
-#include "collide/distance.h"
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 
 #include <algorithm>
 #include <cstddef>

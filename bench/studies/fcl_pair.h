@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/studies/pair_engine.h"
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
 #include <vector>
 

@@ -3,17 +3,16 @@
 // robot's links, and the share of its free postures that covers refuse without and with the proofs.
 #include "robot/pairs/link_pairs.h"
 
+#include "base/error.h"
 #include "bench/program.h"
-#include "collide/solid_within.h"
+#include "collide/solids/solid_within.h"
 #include "robot/cover/false_alarms.h"
-#include "robot/cover/link_bodies.h"
+#include "robot/cover/link_mesh.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/kinematics.h"
 #include "robot/pairs/allowed_collisions.h"
-#include "robot/pairs/link_pairs_file.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
 #include <cstddef>
 #include <memory>

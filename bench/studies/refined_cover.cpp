@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/studies/refined_cover.h"
 
-#include "spheretree/error.h"
-#include "spheretree/median_split.h"
+#include "base/error.h"
+#include "geometry/median_split.h"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/studies/report.h"
 
-#include "spheretree/atomic_file.h"
+#include "base/files.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/cad/cad_message.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 
 #include <nlohmann/json.hpp>
 

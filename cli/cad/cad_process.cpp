@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/cad/cad_process.h"
 
+#include "base/error.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
 #include "cli/modules/module.h"
-#include "spheretree/error.h"
-#include "spheretree/program_output.h"
-#include "spheretree/text/text.h"
 
 #include <array>
 #include <cmath>

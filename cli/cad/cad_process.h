@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/cad/cad_file.h"
+#include "io/cad/cad_file.h"
 
 #include <filesystem>
 #include <vector>

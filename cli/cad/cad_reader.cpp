@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program that reads one CAD file for the command (cad_process.h).
+#include "base/error.h"
+#include "base/text.h"
 #include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
-#include "simplifier/cad/cad_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
+#include "io/cad/cad_file.h"
 
 #include <cerrno>
 #include <csignal>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/in_file.h"
 #include "cli/files/interruption.h"
@@ -18,12 +19,11 @@
 #include "cli/text/next_step.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "mesh/mesh_report.h"
-#include "simplifier/leak_points.h"
+#include "geometry/mesh_report.h"
+#include "io/sphere_file.h"
+#include "simplifier/leaks.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
-#include "spheretree/sphere_file.h"
 
 #include <CLI/CLI.hpp>
 

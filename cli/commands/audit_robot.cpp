@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/audit_robot.h"
 
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/in_file.h"
 #include "cli/files/interruption.h"
@@ -23,9 +24,7 @@
 #include "cli/text/message.h"
 #include "cli/text/next_step.h"
 #include "cli/text/progress.h"
-#include "robot/cover/repair_robot.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

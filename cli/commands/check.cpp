@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/in_file.h"
 #include "cli/files/output.h"
@@ -25,8 +26,7 @@
 #include "robot/check/scene_setup.h"
 #include "robot/cover/goal_cover.h"
 #include "robot/files/urdf.h"
-#include "robot/pairs/link_pairs_file.h"
-#include "spheretree/error.h"
+#include "robot/pairs/link_pairs.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/in_file.h"
 #include "cli/help/command_specification.h"
@@ -11,9 +12,8 @@
 #include "cli/text/message.h"
 #include "cli/text/progress.h"
 #include "cli/text/units.h"
-#include "robot/cover/link_bodies.h"
+#include "robot/cover/link_mesh.h"
 #include "robot/pairs/srdf_judgement.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/collide.h"
 
+#include "base/error.h"
+#include "base/text.h"
 #include "cli/commands/command.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/json.h"
-#include "collide/distance.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

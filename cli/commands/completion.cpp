@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/help/completion.h"
 
+#include "base/files.h"
 #include "cli/commands/command.h"
 #include "cli/files/output.h"
 #include "cli/help/help.h"
 #include "cli/text/exit_code.h"
-#include "spheretree/atomic_file.h"
 
 #include <CLI/CLI.hpp>
 

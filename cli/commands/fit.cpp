@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/files.h"
 #include "cli/commands/command.h"
 #include "cli/files/in_file.h"
 #include "cli/files/interruption.h"
@@ -17,10 +18,9 @@
 #include "cli/text/next_step.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
+#include "io/sphere_file.h"
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/simplify.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

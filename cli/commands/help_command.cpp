@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/text.h"
 #include "cli/commands/command.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/help/usage_error.h"
 #include "cli/text/exit_code.h"
-#include "spheretree/error.h"
-#include "spheretree/text/nearest_name.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/files.h"
+#include "base/json.h"
 #include "cli/commands/command.h"
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
@@ -10,13 +13,10 @@
 #include "cli/text/exit_code.h"
 #include "cli/text/json.h"
 #include "cli/text/message.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/atomic_file.h"
+#include "geometry/enclosing_sphere.h"
+#include "geometry/mesh_report.h"
+#include "io/sphere_file.h"
 #include "spheretree/check.h"
-#include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
-#include "spheretree/sphere_file.h"
-#include "spheretree/text/parse_json.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

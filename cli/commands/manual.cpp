@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "cli/commands/command.h"
 #include "cli/files/interruption.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 #include "cli/text/exit_code.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/files.h"
 #include "cli/commands/command.h"
 #include "cli/files/in_file.h"
 #include "cli/files/interruption.h"
@@ -20,13 +22,11 @@
 #include "cli/text/message.h"
 #include "cli/text/next_step.h"
 #include "cli/text/progress.h"
-#include "robot/check/named_postures.h"
+#include "robot/check/scene_setup.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/srdf.h"
 #include "robot/model/link_spheres.h"
-#include "robot/pairs/ignored_pairs.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "robot/pairs/allowed_collisions.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/interruption.h"
 #include "cli/files/output.h"
@@ -7,9 +8,8 @@
 #include "cli/text/exit_code.h"
 #include "cli/text/message.h"
 #include "cli/text/next_step.h"
+#include "io/sphere_file.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
-#include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

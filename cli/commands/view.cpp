@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/commands/command.h"
 #include "cli/files/model_unit.h"
 #include "cli/files/output.h"
@@ -12,7 +13,6 @@
 #include "cli/pages/view_robot.h"
 #include "cli/robots/sphere_input.h"
 #include "cli/text/exit_code.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

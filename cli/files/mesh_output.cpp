@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/mesh_output.h"
 
-#include "mesh/io/mesh_io.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "io/mesh_io.h"
 #include "simplifier/baseline/convex_decomposition.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cctype>

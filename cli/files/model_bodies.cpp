@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/model_bodies.h"
 
-#include "mesh/io/mesh_io.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "io/mesh_io.h"
 
 #include <algorithm>
 #include <filesystem>

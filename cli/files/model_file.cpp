@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/model_file.h"
 
+#include "base/error.h"
 #include "cli/cad/cad_process.h"
 #include "cli/text/message.h"
-#include "mesh/io/length_unit.h"
-#include "mesh/io/mesh_io.h"
-#include "spheretree/error.h"
+#include "io/length_unit.h"
+#include "io/mesh_io.h"
 
 #include <cmath>
 #include <cstdint>

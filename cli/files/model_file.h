@@ -2,9 +2,9 @@
 #pragma once
 
 #include "cli/text/json.h"
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cad/cad_file.h"
-#include "spheretree/sphere_file.h"
+#include "geometry/triangle_mesh.h"
+#include "io/cad/cad_file.h"
+#include "io/sphere_file.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/model_unit.h"
 
+#include "base/error.h"
 #include "cli/text/message.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/output.h"
 
+#include "base/error.h"
+#include "base/files.h"
 #include "cli/files/interruption.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 
 #include <set>
 #include <system_error>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/recognize.h"
 
+#include "base/files.h"
 #include "cli/help/file_endings.h"
-#include "mesh/io/mesh_io.h"
-#include "spheretree/atomic_file.h"
+#include "io/mesh_io.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/files/model_unit.h"
-#include "mesh/mesh_report.h"
+#include "geometry/mesh_report.h"
 #include "simplifier/simplify.h"
 
 #include <string>

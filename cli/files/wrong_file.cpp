@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/wrong_file.h"
 
+#include "base/error.h"
 #include "cli/files/recognize.h"
 #include "cli/help/usage_error.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/help/usage_error.h"
 
+#include "base/text.h"
 #include "cli/help/command_specification.h"
 #include "cli/help/help.h"
-#include "spheretree/text/nearest_name.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options/length_options.h"
 
+#include "base/error.h"
 #include "cli/help/command_specification.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/io/length_unit.h"
+#include "io/length_unit.h"
 
 #include <functional>
 #include <optional>

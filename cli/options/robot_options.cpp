@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options/robot_options.h"
 
+#include "base/error.h"
 #include "cli/help/command_specification.h"
 #include "cli/options/length_options.h"
 #include "cli/text/next_step.h"
 #include "simplifier/zone_file.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options/shard.h"
 
-#include "spheretree/text/text.h"
+#include "base/text.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/check_view.h"
 
+#include "base/error.h"
 #include "cli/options/robot_options.h"
 #include "cli/pages/page_output.h"
 #include "cli/pages/view_obstacles.h"
 #include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
 #include "cli/text/message.h"
-#include "spheretree/error.h"
 
 #include <utility>
 #include <vector>

@@ -7,7 +7,7 @@
 #include "robot/cover/link_mesh.h"
 #include "robot/files/scene_file.h"
 #include "robot/files/trajectory_file.h"
-#include "robot/model/robot_description.h"
+#include "robot/model/robot_model.h"
 
 #include <string>
 

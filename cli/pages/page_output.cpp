@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/page_output.h"
 
+#include "base/files.h"
 #include "cli/files/interruption.h"
 #include "cli/text/message.h"
-#include "spheretree/atomic_file.h"
 
 #include <filesystem>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/view_files.h"
 
+#include "base/error.h"
+#include "base/files.h"
 #include "cli/files/in_file.h"
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "cli/files/recognize.h"
 #include "cli/text/print.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/sphere_file.h"
+#include "io/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/json.h"
 #include "cli/pages/view_page.h"
 #include "cli/text/json.h"
-#include "spheretree/sphere.h"
-#include "spheretree/text/parse_json.h"
+#include "geometry/sphere.h"
 
 #include <filesystem>
 #include <string>

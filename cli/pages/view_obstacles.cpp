@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/view_obstacles.h"
 
+#include "io/sphere_file.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/link_mesh.h"
-#include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <Eigen/Geometry>

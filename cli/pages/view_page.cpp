@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/view_page.h"
 
+#include "base/error.h"
 #include "cli/pages/view_encoding.h"
 #include "cli/pages/view_page_parts.h"
 #include "cli/text/json.h"
-#include "spheretree/error.h"
 
 #include <Eigen/Geometry>
 

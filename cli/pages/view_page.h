@@ -2,9 +2,8 @@
 #pragma once
 
 #include "cli/text/json.h"
-#include "mesh/triangle_mesh.h"
-#include "simplifier/leak_points.h"
-#include "simplifier/leak_surface.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/leaks.h"
 #include "spheretree/sphere_tree.h"
 
 #include <memory>

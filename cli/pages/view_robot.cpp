@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/pages/view_robot.h"
 
+#include "base/error.h"
+#include "base/files.h"
 #include "cli/files/in_file.h"
 #include "cli/files/recognize.h"
 #include "cli/options/robot_options.h"
@@ -9,12 +11,10 @@
 #include "cli/pages/view_leaks.h"
 #include "cli/pages/view_pairs.h"
 #include "cli/robots/sphere_input.h"
-#include "robot/check/named_postures.h"
+#include "robot/check/scene_setup.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/atomic_file.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <filesystem>

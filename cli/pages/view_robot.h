@@ -3,10 +3,10 @@
 
 #include "cli/pages/view_page.h"
 #include "cli/robots/trajectory_input.h"
+#include "geometry/pose.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
-#include "robot/model/robot_description.h"
-#include "spheretree/pose.h"
+#include "robot/model/robot_model.h"
 
 #include <string>
 #include <vector>

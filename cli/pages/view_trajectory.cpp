@@ -3,7 +3,7 @@
 
 #include "cli/pages/view_encoding.h"
 #include "cli/robots/trajectory_check.h"
-#include "robot/model/joint_limits.h"
+#include "robot/model/joint_positions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/progress.h"
 #include "cli/robots/check_report.h"
 #include "cli/text/json.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_file.h"
-#include "spheretree/progress.h"
 
 #include <cstddef>
 #include <string>

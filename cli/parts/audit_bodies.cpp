@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parts/audit_bodies.h"
 
+#include "base/error.h"
+#include "base/rounding.h"
 #include "cli/files/in_file.h"
 #include "cli/files/model_bodies.h"
 #include "cli/parts/audit_proof.h"
@@ -8,8 +10,6 @@
 #include "cli/text/json.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <iostream>

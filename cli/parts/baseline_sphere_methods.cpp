@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "cli/help/command_specification.h"
 #include "cli/modules/module.h"
 #include "cli/options/check_number.h"
 #include "cli/parts/baseline_spheres.h"
-#include "spheretree/error.h"
-#include "spheretree/refit.h"
+#include "spheretree/build.h"
 
 #include <CLI/CLI.hpp>
 

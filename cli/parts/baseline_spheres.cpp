@@ -8,9 +8,9 @@
 #include "cli/text/message.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "mesh/io/mesh_io.h"
+#include "io/mesh_io.h"
 #include "simplifier/baseline/made_conservative.h"
-#include "simplifier/certificate.h"
+#include "simplifier/types/certificate.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "cli/parts/baseline.h"
+#include "io/sphere_file.h"
 #include "simplifier/baseline/hubbard_spheres.h"
 #include "simplifier/baseline/level_set_packing.h"
 #include "simplifier/baseline/medial_axis.h"
 #include "simplifier/baseline/octree_spheres.h"
 #include "simplifier/baseline/sphere_packing.h"
 #include "simplifier/baseline/voxelisation.h"
-#include "spheretree/sphere_file.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstdint>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parts/fit_bodies.h"
 
+#include "base/error.h"
+#include "base/files.h"
 #include "cli/files/interruption.h"
 #include "cli/files/model_bodies.h"
 #include "cli/files/output.h"
@@ -13,9 +15,7 @@
 #include "cli/text/next_step.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "spheretree/atomic_file.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "spheretree/tree_file.h"
 
 #include <algorithm>

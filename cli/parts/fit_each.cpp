@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parts/fit_each.h"
 
+#include "base/error.h"
 #include "cli/options/shard.h"
 #include "cli/text/exit_code.h"
 #include "cli/text/message.h"
-#include "spheretree/error.h"
-#include "spheretree/sphere_file.h"
+#include "io/sphere_file.h"
 
 #include <algorithm>
 #include <filesystem>

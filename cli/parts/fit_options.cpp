@@ -5,8 +5,8 @@
 #include "cli/help/command_specification.h"
 #include "cli/options/check_number.h"
 #include "cli/options/search_options.h"
+#include "io/sphere_file.h"
 #include "simplifier/zone_file.h"
-#include "spheretree/sphere_file.h"
 
 #include <CLI/CLI.hpp>
 

@@ -4,7 +4,7 @@
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "cli/text/json.h"
-#include "mesh/mesh_report.h"
+#include "geometry/mesh_report.h"
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/simplify.h"
 

@@ -5,7 +5,7 @@
 #include "simplifier/baseline/medial_cover.h"
 #include "simplifier/baseline/packing_cover.h"
 #endif
-#include "spheretree/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 

@@ -4,7 +4,6 @@
 #include "cli/robots/pair_kinds.h"
 #include "cli/text/json.h"
 #include "robot/cover/audit_robot.h"
-#include "robot/cover/repair_robot.h"
 #include "robot/formats/sphere_formats.h"
 
 #include <string>

@@ -3,9 +3,9 @@
 
 #include "cli/options/shard.h"
 #include "cli/robots/turn_review.h"
-#include "robot/check/pair_status.h"
 #include "robot/check/robot_checker.h"
-#include "robot/files/trajectory_review.h"
+#include "robot/check/robot_collision.h"
+#include "robot/files/trajectory_file.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/check_spheres.h"
 
+#include "base/error.h"
 #include "cli/files/in_file.h"
 #include "cli/robots/link_warnings.h"
 #include "cli/robots/sphere_input.h"
@@ -8,7 +9,6 @@
 #include "cli/text/progress.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/link_spheres.h"
-#include "spheretree/error.h"
 
 #include <cstddef>
 #include <utility>

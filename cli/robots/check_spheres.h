@@ -3,7 +3,6 @@
 
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/srdf.h"
-#include "robot/model/robot_description.h"
 #include "robot/model/robot_model.h"
 
 #include <string>

@@ -4,10 +4,10 @@
 #include "cli/robots/pair_report.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "robot/cover/link_bodies.h"
+#include "robot/cover/link_mesh.h"
 #include "robot/model/link_spheres.h"
-#include "robot/pairs/ignored_pairs.h"
-#include "robot/pairs/link_pairs_file.h"
+#include "robot/pairs/allowed_collisions.h"
+#include "robot/pairs/link_pairs.h"
 
 #include <algorithm>
 #include <iomanip>

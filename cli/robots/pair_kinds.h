@@ -2,10 +2,10 @@
 #pragma once
 
 #include "cli/text/json.h"
-#include "robot/check/pair_status.h"
+#include "robot/check/robot_collision.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
-#include "robot/model/robot_description.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/srdf_judgement.h"
 
 #include <memory>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/text/json.h"
-#include "robot/check/named_postures.h"
+#include "robot/check/scene_setup.h"
 #include "robot/pairs/link_pairs.h"
 #include "robot/pairs/srdf_judgement.h"
 

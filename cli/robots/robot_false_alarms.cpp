@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/robot_false_alarms.h"
 
+#include "base/error.h"
+#include "base/text.h"
 #include "cli/help/command_specification.h"
 #include "robot/model/link_spheres.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
 
 #include <CLI/CLI.hpp>
 

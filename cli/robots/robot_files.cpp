@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/robot_files.h"
 
-#include "robot/check/named_postures.h"
-#include "robot/pairs/ignored_pairs.h"
-#include "robot/pairs/link_pairs_file.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "robot/check/scene_setup.h"
+#include "robot/pairs/allowed_collisions.h"
+#include "robot/pairs/link_pairs.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
 #include "spheretree/tree_file.h"
 
 #include <climits>

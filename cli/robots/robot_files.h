@@ -2,7 +2,7 @@
 #pragma once
 
 #include "robot/formats/sphere_formats.h"
-#include "robot/model/robot_description.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/link_pairs.h"
 
 #include <filesystem>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/sphere_input.h"
 
+#include "base/error.h"
+#include "base/text.h"
 #include "cli/text/message.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/progress.h"
 #include "cli/robots/check_report.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_file.h"
-#include "spheretree/progress.h"
 
 #include <cstddef>
 #include <vector>

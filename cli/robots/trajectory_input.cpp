@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/trajectory_input.h"
 
+#include "base/error.h"
 #include "cli/text/message.h"
 #include "robot/check/robot_checker.h"
-#include "spheretree/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -3,7 +3,6 @@
 
 #include "cli/options/shard.h"
 #include "robot/files/trajectory_file.h"
-#include "robot/files/trajectory_review.h"
 #include "robot/model/robot_model.h"
 
 #include <cstddef>

@@ -4,7 +4,6 @@
 #include "cli/robots/trajectory_input.h"
 #include "robot/check/robot_checker.h"
 #include "robot/files/trajectory_file.h"
-#include "robot/files/trajectory_review.h"
 #include "robot/model/robot_model.h"
 
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/certificate.h"
 #include "simplifier/simplify.h"
+#include "simplifier/types/certificate.h"
 
 #include <nlohmann/json.hpp>
 

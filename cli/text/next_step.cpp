@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/text/next_step.h"
 
+#include "base/text.h"
 #include "cli/text/message.h"
-#include "spheretree/text/text.h"
 
 #include <cctype>
 #include <filesystem>

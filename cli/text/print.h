@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/certificate.h"
-#include "simplifier/levels.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/levels.h"
 
 #include <span>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/progress.h"
+#include "base/progress.h"
 
 #include <chrono>
 #include <mutex>

@@ -3,11 +3,10 @@
 
 // What a CheckPlan is compiled from, in double precision and in the frame of the mechanism's root.
 
-#include "collide/kernels/free_cells.h"
-#include "collide/kernels/search_trees.h"
-#include "collide/mechanism_check.h"
-#include "collide/primitive.h"
-#include "spheretree/pose.h"
+#include "collide/kernels/plan_trees.h"
+#include "collide/mechanism/mechanism_check.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
 
 #include <Eigen/Core>
 

@@ -3,8 +3,13 @@
 
 // A CheckPlan with what it points to, and the memory that its kernels write to.
 
+#include "base/rounding.h"
 #include "collide/kernels/check_plan.h"
 #include "collide/kernels/check_plan_source.h"
+#include "collide/search/packed_tree.h"
+#include "geometry/sphere.h"
+
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <cstdint>
@@ -111,5 +116,107 @@ class PlanMemory {
 
 extern template class PlanMemory<float>;
 extern template class PlanMemory<double>;
+
+}  // namespace spherule::internal
+
+// A WidePlan with what it points to, and the memory that its kernel writes to.
+
+namespace spherule::internal {
+
+class CompiledWidePlan {
+ public:
+  // `compiled` is of the same source.
+  CompiledWidePlan(const PlanSource& source, const CompiledPlan<float>& compiled);
+  CompiledWidePlan(const CompiledWidePlan&) = delete;
+  CompiledWidePlan& operator=(const CompiledWidePlan&) = delete;
+
+  const WidePlan& plan() const { return plan_; }
+  std::size_t task_count() const { return task_count_; }
+
+ private:
+  void add_body(const SearchTrees& trees, const Pose& pose, double inflation, bool is_confirmed,
+                std::int32_t frame);
+  void compile_partners(const CheckPlan<float>& plan, std::size_t bodies);
+
+  WidePlan plan_{};
+  std::vector<WideFrame> frames_{};
+  std::vector<PackedTree> trees_{};
+  std::vector<WideBody> bodies_{};
+  std::vector<std::int32_t> tree_of_{};
+  std::vector<WidePartners> partners_{};
+  std::vector<std::int32_t> pair_tests_{};
+  std::size_t placed_count_ = 0;
+  int depth_ = 1;  // of the highest tree
+  std::size_t task_count_ = 0;
+};
+
+class WideMemory {
+ public:
+  WideMemory(const CheckPlan<float>& plan, const CompiledWidePlan& wide);
+  WideMemory(const WideMemory&) = delete;
+  WideMemory& operator=(const WideMemory&) = delete;
+
+  const WideScratch& view() const { return view_; }
+
+ private:
+  std::vector<double> positions_;
+  std::vector<float> sines_;
+  std::vector<float> cosines_;
+  std::vector<WidePose> poses_;
+  std::vector<float> roots_[3];
+  std::vector<float> radii_;
+  std::vector<WideSpheres> placed_;
+  std::vector<std::uint64_t> stamps_;
+  std::uint64_t evaluation_ = 0;
+  std::vector<WideTask> tasks_;
+  PlanRecent recent_{};
+  WideScratch view_{};
+};
+
+}  // namespace spherule::internal
+
+// Obstacles as a CheckPlan has them, rounded outward. The proofs are in plan_shapes.cpp.
+
+namespace spherule::internal {
+
+template <class Real>
+inline constexpr double kRoundoff = kFloatRoundoff;
+template <>
+inline constexpr double kRoundoff<double> = kUnitRoundoff;
+
+// Not below x.
+template <class Real>
+Real rounded_up(double x);
+template <>
+inline float rounded_up<float>(double x) {
+  return rounded_up_to_single(x);
+}
+template <>
+inline double rounded_up<double>(double x) {
+  return x;
+}
+
+// Of a sphere in a plan, with the slack of 16 roundoffs that plan_search.h needs.
+template <class Real>
+Real inflated_radius(double radius, double inflation);
+
+// How far a finite obstacle reaches from the root's origin; 0 for a half-space.
+double reach_of(const PlanSource::Obstacle& obstacle);
+
+// Of a primitive; bodies reach up to `reach`.
+template <class Real>
+PlanObstacle<Real> compiled_solid(const PlanSource::Obstacle& obstacle, double reach);
+
+// The box of an obstacle in lane 0, for bodies that reach up to `reach`; and no box at all.
+template <class Real>
+PlanBoxes<Real> compiled_box(const PlanSource::Obstacle& obstacle, double reach);
+template <class Real>
+PlanBoxes<Real> empty_boxes();
+
+// A sphere outside of which no point of a body ever is.
+Sphere reachable(const PlanSource& source, std::size_t body, double reach);
+
+// From the box in lane 0.
+double distance_from_box(const Eigen::Vector3d& p, const PlanBoxes<double>& box);
 
 }  // namespace spherule::internal

@@ -13,11 +13,10 @@
 // Every function with vectors is inlined or local: none crosses a boundary between files.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-#include "collide/kernels/plan_bounds.h"
-#include "collide/kernels/plan_cells.h"
-#include "collide/kernels/plan_lane_search.h"
+#include "collide/kernels/plan_poses.h"
 #include "collide/kernels/plan_search.h"
-#include "collide/kernels/plan_single.h"
+#include "collide/kernels/plan_vectors.h"
+#include "collide/kernels/plan_wide.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

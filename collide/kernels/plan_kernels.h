@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/instruction_set.h"
 #include "collide/kernels/check_plan.h"
+#include "collide/search/instruction_set.h"
 
 namespace spherule::internal {
 

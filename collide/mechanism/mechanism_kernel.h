@@ -4,7 +4,7 @@
 // What a check of a mechanism against standing obstacles works on, as plain data, and the kernels
 // that do it, one for each instruction set. All lengths are in the frame of the mechanism's root.
 
-#include "collide/search/packed_node.h"
+#include "collide/search/packed_tree.h"
 
 #include <cstdint>
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #define SPHERULE_KERNEL avx2
-#include "collide/mechanism/mechanism_kernel_impl.h"
+#include "collide/mechanism/kernel_block.h"
 
 namespace spherule::internal {
 

@@ -1,19 +1,77 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What a MechanismCheck and its scratch consist of.
+// What checks of mechanisms are made from: whether it can be, and as the kernels have it.
 
 #include "collide/mechanism/coherence_cache.h"
-#include "collide/mechanism/joined_scene.h"
+#include "collide/mechanism/mechanism_check.h"
 #include "collide/mechanism/mechanism_kernel.h"
-#include "collide/mechanism_check.h"
 #include "collide/search/packed_tree.h"
+#include "geometry/sphere.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
+
+namespace spherule::internal {
+
+// Each throws Error, where an index is out of range, something is missing or a number cannot be
+// used.
+void check_frames(std::span<const MechanismFrame> frames);
+void check_body(std::size_t body, int frame, std::size_t frame_count, bool has_shape);
+void check_obstacles(std::span<const MechanismObstacle> obstacles);
+void check_pairs(std::span<const MechanismPair> pairs, std::size_t bodies, std::size_t obstacles);
+void check_pose_error(double pose_error);
+
+KernelFrame kernel_frame(const MechanismFrame& frame);
+
+// How many variables the frames name: one more than the largest index.
+int variable_count(std::span<const MechanismFrame> frames);
+
+// From the root to a frame: the largest distance of its origin, and how many frames it takes.
+struct Chain {
+  double length = 0.0;
+  double frames = 0.0;
+};
+
+// Of every frame; throws Error for one of more than kLongestLaneChain frames.
+std::vector<Chain> chains_of(std::span<const MechanismFrame> frames);
+
+// Throws Error for instructions that this machine has not got.
+const Kernels& kernels_for(InstructionSet instructions);
+
+// Where a sphere of a joined set comes from.
+struct SphereOrigin {
+  int part = 0;  // a body or an obstacle
+  std::int32_t sphere = 0;
+};
+
+// The spheres of bodies on one frame, in that frame, or of obstacles, in the root's.
+struct JoinedSpheres {
+  int frame = -1;
+  std::vector<Sphere> spheres{};
+  std::vector<SphereOrigin> origins{};
+};
+
+// Bodies and obstacles that are searched together: obstacles that meet the same bodies, and bodies
+// on one frame that meet the same obstacles. Only those that are in a pair are here, and the pairs
+// stand in the order in which they, or what they are joined with, are first named.
+struct JoinedScene {
+  std::vector<JoinedSpheres> bodies;
+  std::vector<JoinedSpheres> obstacles;
+  std::vector<KernelPair> pairs;
+
+  JoinedScene(std::span<const MechanismBody> all_bodies,
+              std::span<const MechanismObstacle> all_obstacles,
+              std::span<const MechanismPair> all_pairs);
+};
+
+}  // namespace spherule::internal
+
+// What a MechanismCheck and its scratch consist of.
 
 namespace spherule {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 #include "collide/meshes/patch_trees.h"
 #include "collide/search/relative_pose.h"
-#include "mesh/geometry/triangle_pair.h"
+#include "geometry/triangles.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For x86 processors with AVX2 and fused multiply-add; compiled for these.
-#include "collide/meshes/mesh_kernel.h"
+#include "collide/meshes/packed_mesh.h"
 
 #include <cstddef>
 

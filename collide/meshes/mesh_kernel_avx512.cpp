@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For x86 processors with AVX-512 (F, DQ, BW, VL); compiled for these.
-#include "collide/meshes/mesh_kernel.h"
+#include "collide/meshes/packed_mesh.h"
 
 #include <cstddef>
 

@@ -26,7 +26,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #include "collide/mechanism/kernel_search.h"
-#include "collide/meshes/mesh_kernel.h"
+#include "collide/meshes/packed_mesh.h"
 
 #include <cstddef>
 

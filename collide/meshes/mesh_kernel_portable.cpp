@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For any machine; on x86 with SSE2, which all of its 64-bit processors have.
-#include "collide/meshes/mesh_kernel.h"
+#include "collide/meshes/packed_mesh.h"
 
 #include <cstddef>
 

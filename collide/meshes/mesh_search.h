@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/instruction_set.h"
-#include "collide/mesh_tree.h"
-#include "collide/meshes/mesh_kernel.h"
+#include "collide/meshes/mesh_tree.h"
+#include "collide/meshes/packed_mesh.h"
+#include "collide/search/instruction_set.h"
 
 namespace spherule::internal {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/meshes/packed_mesh.h"
 
-#include "collide/search/box_order.h"
-#include "collide/search/single_precision.h"
+#include "collide/search/box_gap.h"
+#include "collide/search/packed_tree.h"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/motion.h"
+#include "collide/motion/motion.h"
 #include "collide/search/relative_pose.h"
 
 #include <algorithm>

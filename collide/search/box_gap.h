@@ -28,9 +28,14 @@
 // does, so the same holds for it.
 
 #include "collide/search/relative_pose.h"
+#include "geometry/median_split.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 namespace spherule::internal {
 
@@ -108,6 +113,34 @@ inline bool boxes_apart(const SphereTree& a, const SphereTree& b, const Relative
                         double clearance = 0.0) {
   if (a.is_leaf(0) && b.is_leaf(0)) return false;
   return box_gap(a, b, pose) > pose.slack() + clearance * kMarginUp;
+}
+
+}  // namespace spherule::internal
+
+// How trees of boxes share out what they are built over.
+
+namespace spherule::internal {
+
+// Around the boxes `box_of(part)` of all parts.
+template <class Part, class BoxOf>
+Eigen::AlignedBox3d box_around(std::span<Part> parts, const BoxOf& box_of) {
+  Eigen::AlignedBox3d box;
+  for (const Part& part : parts) box.extend(box_of(part));
+  return box;
+}
+
+// Sorts the parts along the longest side of that box, by the middles of their boxes; those with
+// equal ones by their `number_of(part)`, so that the order depends on nothing else.
+template <class Part, class BoxOf, class NumberOf>
+void sort_along_longest_side(std::span<Part> parts, const BoxOf& box_of,
+                             const NumberOf& number_of) {
+  const Eigen::Index axis = longest_axis(box_around(parts, box_of));
+  const auto key = [&](const Part& part) {
+    const Eigen::AlignedBox3d& box = box_of(part);
+    return std::pair(box.min()[axis] + box.max()[axis], number_of(part));
+  };
+  std::sort(parts.begin(), parts.end(),
+            [&](const Part& a, const Part& b) { return key(a) < key(b); });
 }
 
 }  // namespace spherule::internal

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/distance.h"
+#include "base/rounding.h"
+#include "collide/collide.h"
 #include "collide/search/deadline.h"
-#include "spheretree/rounding.h"
+#include "collide/search/relative_pose.h"
+#include "collide/search/traversal.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <queue>
@@ -120,6 +124,100 @@ class NearestFirst {
   double least_lower_ = std::numeric_limits<double>::infinity();
   double least_upper_ = std::numeric_limits<double>::infinity();
   DistanceResult result_;
+};
+
+// The node pairs of TreePair as a space of NearestFirst. A leaf test has
+//   GapInterval interval(pair)   what the distance of two leaves lies between, each end within
+//                                gap_error() of RelativePose.
+template <class LeafTest>
+class PairSpace {
+ public:
+  using Node = NodePair;
+
+  PairSpace(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+            const LeafTest& leaves)
+      : a_(a), b_(b), trees_(a, b, pose), leaves_(leaves) {}
+
+  static std::uint64_t key(NodePair pair) {
+    return static_cast<std::uint64_t>(pair.index(0)) << 32 | pair.index(1);
+  }
+  bool is_leaf(NodePair pair) const { return trees_.is_leaf_pair(pair); }
+  OpenedPair open(NodePair pair) const { return trees_.open(pair); }
+  void gaps(const OpenedPair& opened, double* gaps) const {
+    sphere_gaps(trees_.spheres(opened.side), opened.first, opened.count, opened.sphere, gaps);
+  }
+  NodePair child(NodePair pair, const OpenedPair& opened, std::int32_t i) const {
+    return pair.with(opened.side, opened.first + i);
+  }
+  GapInterval leaf_gap(NodePair pair) const { return leaves_.interval(pair); }
+  SpherePair pair(NodePair pair) const {
+    return {a_.sphere_index(pair.index(0)), b_.sphere_index(pair.index(1))};
+  }
+
+ private:
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const TreePair trees_;
+  const LeafTest& leaves_;
+};
+
+// Leaf test of two sphere trees.
+class SphereLeaves {
+ public:
+  SphereLeaves(const SphereTree& a, const SphereTree& b, const RelativePose& pose,
+               double clearance = 0.0)
+      : a_(a), b_(b), pose_(pose), clearance_(clearance) {}
+
+  bool touches(NodePair pair) const {
+    return pose_.touches(sphere_a(pair), sphere_b(pair), clearance_);
+  }
+  double gap(NodePair pair) const { return pose_.gap(sphere_a(pair), sphere_b(pair)); }
+  GapInterval interval(NodePair pair) const { return {gap(pair), gap(pair)}; }
+
+ private:
+  Sphere sphere_a(NodePair pair) const { return a_.sphere(pair.index(0)); }
+  Sphere sphere_b(NodePair pair) const { return b_.sphere(pair.index(1)); }
+
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const RelativePose& pose_;
+  const double clearance_;
+};
+
+// The nodes of one tree as a space of NearestFirst. `Gaps` has
+//   double gap(sphere)              of the sphere of a node;
+//   GapInterval leaf_gap(sphere)  of what the sphere of that index stands for.
+// In a pair, `a` is the sphere and `b` is 0.
+template <class Gaps>
+class SphereSpace {
+ public:
+  using Node = std::int32_t;
+  struct Opened {
+    std::int32_t first;
+    std::int32_t count;
+  };
+
+  SphereSpace(const SphereTree& tree, const Gaps& gaps) : tree_(tree), gaps_(gaps) {}
+
+  static std::uint64_t key(Node node) { return static_cast<std::uint64_t>(node); }
+  bool is_leaf(Node node) const { return tree_.is_leaf(static_cast<std::size_t>(node)); }
+  Opened open(Node node) const {
+    const auto index = static_cast<std::size_t>(node);
+    return {tree_.first_child(index), tree_.child_count(index)};
+  }
+  void gaps(const Opened& opened, double* gaps) const {
+    for (std::int32_t i = 0; i < opened.count; ++i) gaps[i] = gap(opened.first + i);
+  }
+  Node child(Node, const Opened& opened, std::int32_t i) const { return opened.first + i; }
+  GapInterval leaf_gap(Node node) const { return gaps_.leaf_gap(pair(node).a); }
+  SpherePair pair(Node node) const {
+    return {tree_.sphere_index(static_cast<std::size_t>(node)), 0};
+  }
+  double gap(Node node) const { return gaps_.gap(tree_.sphere(static_cast<std::size_t>(node))); }
+
+ private:
+  const SphereTree& tree_;
+  const Gaps& gaps_;
 };
 
 }  // namespace spherule::internal

@@ -1,16 +1,57 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/search/packed_tree.h"
 
-#include "collide/search/single_precision.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "geometry/enclosing_sphere.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 
 namespace spherule::internal {
+namespace {
+
+// Around more spheres than these, the sphere of the tree is good enough.
+constexpr std::size_t kManySpheres = 4096;
+
+}  // namespace
+
+CullingSpheres::CullingSpheres(const SphereTree& tree) : spheres_(tree.node_count()) {
+  std::vector<Sphere> leaves;
+  visit(tree, 0, leaves);
+}
+
+// As deep as the tree: 3 log2 n + 9 at most for those of build_tree(). `leaves` are those visited
+// so far.
+void CullingSpheres::visit(const SphereTree& tree, std::size_t node, std::vector<Sphere>& leaves) {
+  spheres_[node] = tree.sphere(node);
+  if (tree.is_leaf(node)) {
+    leaves.push_back(spheres_[node]);
+    return;
+  }
+  const std::size_t first = leaves.size();
+  for (std::int32_t i = 0; i < tree.child_count(node); ++i) {
+    visit(tree, static_cast<std::size_t>(tree.first_child(node) + i), leaves);
+  }
+  if (leaves.size() - first > kManySpheres) return;
+  const Sphere around = enclosing_sphere(std::span<const Sphere>(leaves).subspan(first));
+  if (around.radius < spheres_[node].radius) spheres_[node] = around;
+}
+
+[[gnu::noinline]] double in_single_precision(double x) {
+  return static_cast<double>(static_cast<float>(x));
+}
+
+float rounded_up_to_single(double x) {
+  const double nearest = in_single_precision(x);
+  const auto result = static_cast<float>(nearest);
+  return nearest >= x ? result : std::nextafter(result, std::numeric_limits<float>::infinity());
+}
+
 namespace {
 
 // Far from everything, with a square that does not overflow.

@@ -1,15 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/search/culling_spheres.h"
-#include "collide/search/packed_node.h"
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace spherule::internal {
+
+// The children of an inner node, as one wide test reads them.
+struct alignas(64) PackedNode {
+  static constexpr int kWidth = 8;
+
+  float x[kWidth];
+  float y[kWidth];
+  float z[kWidth];
+  float radius[kWidth];
+  // Of the child: a node, or ~i for the leaf of sphere i. Lanes without a child are spheres of
+  // radius zero so far away that nothing reaches them.
+  std::int32_t child[kWidth];
+};
+
+// A leaf, as the nodes hold it.
+struct PackedSphere {
+  float center[3];
+  float radius;
+};
+
+// The spheres of a tree's nodes, as a search culls with them: for each node the tree's own, or the
+// smallest around the leaves below it where that is smaller (it need not enclose the nodes between,
+// since nothing but leaves decides).
+class CullingSpheres {
+ public:
+  explicit CullingSpheres(const SphereTree& tree);
+
+  const Sphere& operator[](std::size_t node) const { return spheres_[node]; }
+
+ private:
+  void visit(const SphereTree& tree, std::size_t node, std::vector<Sphere>& leaves);
+
+  std::vector<Sphere> spheres_;
+};
+
+// The unit roundoff of single precision.
+inline constexpr double kFloatRoundoff = 0x1p-24;
+
+// The nearest number of single precision. A function that is not inlined: where g++ 12 vectorises
+// the way there and back (at -O2, two numbers at once), it leaves it out.
+// PackedTree.EverySphereHasRoomForTheInflatedSpheresBelow shows it.
+double in_single_precision(double x);
+
+// A number in single precision, not below the one given.
+float rounded_up_to_single(double x);
 
 // A sphere tree for filters in single precision: a test that finds two of its spheres apart proves
 // that no spheres below them touch.

@@ -1,6 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "collide/collide.h"
+#include "collide/search/box_gap.h"
+#include "collide/search/deadline.h"
+#include "collide/search/traversal.h"
+
+#include <algorithm>
+
+namespace spherule::internal {
+
+// What a search that has ended, `result.complete` or not, says about two bodies. The query has
+// found() and smallest_gap(), the pose its gap_error().
+template <class Query, class AnyPose>
+void conclude(const Query& query, const AnyPose& pose, CollisionResult& result) {
+  std::sort(result.pairs.begin(), result.pairs.end());
+  if (query.found()) {
+    result.verdict = Verdict::kCollision;
+  } else if (result.complete) {
+    result.verdict = Verdict::kFree;
+    result.distance_lower_bound =
+        std::max(0.0, query.smallest_gap() * kRelativeDown - pose.gap_error());
+  }
+}
+
+}  // namespace spherule::internal
+
 // The yes-or-no query and the query for pairs, for any kind of leaf. A leaf test has
 //   bool touches(pair) const        the canonical test of two leaves;
 //   double gap(pair) const          their distance: above the exact one by at most gap_error() of
@@ -8,14 +33,6 @@
 //                                   (mesh_tree.h);
 //   bool may_touch(pair) const      only where it has one: false for nodes below which no leaves
 //                                   touch, though their spheres may.
-
-#include "collide/collide.h"
-#include "collide/search/box_gap.h"
-#include "collide/search/conclusion.h"
-#include "collide/search/deadline.h"
-#include "collide/search/traversal.h"
-
-#include <algorithm>
 
 namespace spherule::internal {
 

@@ -59,9 +59,9 @@
 // absolute term kUnderflow = 2^-530 in every pad is far above the first (a few dozen products) and
 // gives s^2 >= 2^-1060, far above the few 2^-1075 lost in d2.
 
-#include "spheretree/moved_from.h"
-#include "spheretree/pose.h"
-#include "spheretree/rounding.h"
+#include "base/moved_from.h"
+#include "base/rounding.h"
+#include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
 
 #include <algorithm>

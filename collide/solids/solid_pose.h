@@ -18,7 +18,7 @@
 // Squares that underflow are below kUnderflow, as there.
 
 #include "collide/search/relative_pose.h"
-#include "collide/solid_fields.h"
+#include "collide/solids/solid_fields.h"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/solid_fields.h"
-#include "mesh/geometry/triangle_pair.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "collide/solids/solid_fields.h"
+#include "geometry/triangles.h"
 
 #include <Eigen/Core>
 

@@ -2,9 +2,7 @@
 // The module spherule._baselines: the methods of comparison, which stand on large libraries, so
 // that it is loaded when spherule.baselines is imported.
 
-#include "python/bindings/arguments.h"
-#include "python/bindings/arrays.h"
-#include "python/bindings/long_run.h"
+#include "python/bindings/support.h"
 #include "simplifier/baseline/convex_decomposition.h"
 #include "simplifier/baseline/convex_hull.h"
 #include "simplifier/baseline/decimation.h"

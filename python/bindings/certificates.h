@@ -3,13 +3,13 @@
 
 // Certificates, files of spheres, levels and zones as the package has them, and back.
 
-#include "simplifier/certificate.h"
-#include "simplifier/external_spheres.h"
-#include "simplifier/levels.h"
+#include "io/sphere_file.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
-#include "simplifier/zones.h"
-#include "spheretree/sphere_file.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/levels.h"
+#include "simplifier/types/zones.h"
 
 #include <memory>
 #include <optional>

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "python/bindings/checker.h"
-
-#include "python/bindings/arguments.h"
-#include "python/bindings/arrays.h"
-#include "python/bindings/bindings.h"
-#include "python/bindings/bodies.h"
-#include "python/bindings/limits.h"
-#include "python/bindings/long_run.h"
 #include "python/bindings/robots.h"
-#include "python/bindings/scene.h"
+#include "python/bindings/support.h"
 
 #include <algorithm>
 #include <chrono>

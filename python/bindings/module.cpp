@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The compiled part of the package `spherule`. Only its __init__.py imports it.
 
-#include "python/bindings/arguments.h"
-#include "python/bindings/bindings.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "python/bindings/support.h"
 
 #include <exception>
 #include <string>

@@ -3,10 +3,12 @@
 
 // Robots and what belongs to them as the package has them, and back.
 
+#include "robot/check/robot_checker.h"
+#include "robot/check/robot_scene.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/files/srdf.h"
 #include "robot/formats/sphere_formats.h"
-#include "robot/model/robot_description.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
 
@@ -48,5 +50,27 @@ struct AllowedOfRobot {
 };
 
 std::string_view word_of(AllowedReason reason);
+
+// All that was put into a scene, and a scene of it.
+pybind11::tuple scene_state(const RobotScene& scene);
+std::shared_ptr<RobotScene> scene_from(const pybind11::tuple& state);
+
+// A SphereTree, SolidMesh or primitive; a TriangleMesh, or what mesh_of() takes, becomes a
+// SolidMesh.
+ObstacleShape obstacle_of(pybind11::handle shape);
+
+// A checker, what it was made of, and scratches that no query uses now. The list is only touched
+// under the interpreter's lock.
+struct CheckerOfScene {
+  RobotScene scene;
+  pybind11::tuple options;
+  RobotChecker checker;
+  std::size_t dof;
+  std::vector<RobotChecker::Scratch> idle{};
+};
+
+std::shared_ptr<CheckerOfScene> snapshot(const RobotScene& scene, bool enforce_limits,
+                                         const pybind11::object& instructions,
+                                         const pybind11::object& meshes);
 
 }  // namespace spherule::python

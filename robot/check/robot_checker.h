@@ -25,8 +25,8 @@
 // @endcode
 
 #include "collide/contact.h"
-#include "collide/edge.h"
-#include "collide/instruction_set.h"
+#include "collide/search/instruction_set.h"
+#include "collide/sweep.h"
 #include "robot/model/kinematics.h"
 #include "robot/model/robot_model.h"
 

@@ -21,11 +21,11 @@
 // assert(checker.check_config(std::vector{0.5}, scratch));
 // @endcode
 
-#include "collide/primitive.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
 #include "robot/check/robot_checker.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
-#include "spheretree/pose.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstddef>

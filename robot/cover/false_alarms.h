@@ -24,10 +24,10 @@
 // assert(alarms.free == 100 && alarms.refused_share().share() == 1.0);
 // @endcode
 
+#include "base/progress.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
-#include "spheretree/progress.h"
 
 #include <array>
 #include <cstddef>
@@ -108,11 +108,11 @@ struct FalseAlarms {
 
 // Counts the false alarms of a robot's own spheres (Link::trees) among random postures within the
 // limits. A false alarm is a posture that is free by the meshes, insides counted
-// (collide/solid_within.h), in which the spheres of two links overlap that are neither allowed nor
-// proved free by `proofs` (null: nothing is proved). Spheres must cover the bodies, as those of
-// cover_robot() do: the meshes of a pair are tested only where its spheres overlap. A posture in
-// which links touch that are allowed to is free. A pair that seems to touch always is left out and
-// named (FalseAlarms::always_touching).
+// (collide/solids/solid_within.h), in which the spheres of two links overlap that are neither
+// allowed nor proved free by `proofs` (null: nothing is proved). Spheres must cover the bodies, as
+// those of cover_robot() do: the meshes of a pair are tested only where its spheres overlap. A
+// posture in which links touch that are allowed to is free. A pair that seems to touch always is
+// left out and named (FalseAlarms::always_touching).
 //
 // Equal for equal input and options, on any number of threads. Throws Error for no postures, for a
 // link with spheres and without a body that is tested, a body without or with both shapes, and

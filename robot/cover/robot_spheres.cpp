@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/robot_spheres.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "mesh/mesh_report.h"
-#include "robot/cover/internal/equal_links.h"
-#include "robot/cover/internal/link_size.h"
-#include "robot/cover/internal/link_solid.h"
-#include "robot/cover/internal/link_subject.h"
-#include "robot/cover/internal/open_mesh.h"
-#include "robot/model/internal/link_paths.h"
-#include "robot/model/internal/shared_work.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
-#include "spheretree/text/nearest_name.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/text.h"
+#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
+#include "robot/cover/link_parts.h"
+#include "robot/model/link_paths.h"
+#include "robot/model/shared_work.h"
 
 #include <algorithm>
 #include <atomic>

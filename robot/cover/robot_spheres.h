@@ -17,7 +17,7 @@
 
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
-#include "robot/model/robot_description.h"
+#include "robot/model/robot_model.h"
 #include "simplifier/simplify.h"
 
 #include <cstddef>

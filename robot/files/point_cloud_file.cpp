@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/point_cloud_file.h"
 
-#include "mesh/parsing/ply_data.h"
-#include "robot/files/internal/text_lines.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
-#include "spheretree/text/text.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/rounding.h"
+#include "base/text.h"
+#include "io/ply_data.h"
+#include "robot/files/format_text.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/robot/files/point_cloud_file.h>
-// #include <spherule/spheretree/atomic_file.h>
+// #include <spherule/base/files.h>
 // #include <cassert>
 // #include <cmath>
 //

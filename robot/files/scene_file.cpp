@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/scene_file.h"
 
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/nearest_name.h"
-#include "spheretree/text/parse_json.h"
-#include "spheretree/text/text.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/json.h"
+#include "base/text.h"
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>

@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/robot/files/scene_file.h>
-// #include <spherule/spheretree/atomic_file.h>
+// #include <spherule/base/files.h>
 // #include <cassert>
 //
 // const auto path = std::filesystem::temp_directory_path() / "spherule_example.scene.json";
@@ -15,10 +15,10 @@
 // assert(scene.obstacles[0].name == "floor");
 // @endcode
 
-#include "collide/primitive.h"
-#include "robot/model/robot_description.h"
-#include "spheretree/pose.h"
-#include "spheretree/sphere.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
+#include "geometry/sphere.h"
+#include "robot/model/robot_model.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -29,7 +29,7 @@
 
 namespace spherule {
 
-// SPHERES.json (spheretree/sphere_file.h).
+// SPHERES.json (io/sphere_file.h).
 struct SpheresSource {
   std::filesystem::path path;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/srdf.h"
 
-#include "robot/files/internal/xml_file.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "robot/files/xml_file.h"
 
 #include <algorithm>
 #include <cstddef>

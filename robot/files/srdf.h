@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/robot/files/srdf.h>
-// #include <spherule/spheretree/atomic_file.h>
+// #include <spherule/base/files.h>
 // #include <cassert>
 //
 // const auto path = std::filesystem::temp_directory_path() / "spherule_example.srdf";

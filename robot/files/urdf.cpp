@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/urdf.h"
 
-#include "robot/files/internal/mesh_path.h"
-#include "robot/files/internal/urdf_tree.h"
-#include "robot/files/internal/xacro.h"
-#include "robot/files/internal/xml_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/text.h"
+#include "robot/files/mesh_path.h"
+#include "robot/files/xml_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -222,3 +224,90 @@ RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions&
 }
 
 }  // namespace spherule
+
+namespace spherule::internal {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+// As the package.xml of the folder says; empty where there is none that can be read.
+std::string package_name(const fs::path& folder) {
+  const fs::path manifest = folder / "package.xml";
+  if (!is_file(manifest)) return {};
+  try {
+    const XmlFile file(manifest, "package");
+    const auto element = file.root().child("name");
+    return element ? std::string(element->text()) : std::string();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+// The file `rest` below a folder: of that name or, as in a URL, of the name that it escapes. A
+// percent sign that begins no escape stays.
+fs::path below(const fs::path& folder, std::string_view rest) {
+  const fs::path path = folder / rest;
+  const fs::path meant = folder / percent_decoded(rest).text;
+  return !is_file(path) && is_file(meant) ? meant : path;
+}
+
+}  // namespace
+
+MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
+    : folder_(absolute_path(urdf).parent_path()), packages_(options.packages) {}
+
+fs::path MeshPaths::package_root(const std::string& package) {
+  if (!missing_.contains(package)) {
+    std::size_t height = 0;
+    for (fs::path at = folder_;; at = at.parent_path()) {
+      if (height == above_.size()) above_.push_back(package_name(at));
+      if (above_[height++] == package) return at;
+      if (package_name(at / package) == package) return at / package;
+      if (at == at.parent_path()) break;
+    }
+    missing_.insert(package);
+  }
+  throw Error("package://" + package,
+              "the folder of this package is not given (--package " + package +
+                  "=FOLDER, UrdfOptions::packages), and no package.xml of that name stands in a "
+                  "folder above the URDF file or beside one of them");
+}
+
+fs::path MeshPaths::in_package(const std::string& name, std::string_view rest) {
+  const std::size_t begin = std::min(rest.find_first_not_of('/'), rest.size());
+  const std::size_t slash = std::min(rest.find('/', begin), rest.size());
+  const std::string package(rest.substr(begin, slash - begin));
+  if (package.empty()) throw Error(name, "it names no package");
+  auto root = packages_.find(package);
+  if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;
+  return below(root->second, rest.substr(std::min(slash + 1, rest.size())));
+}
+
+fs::path MeshPaths::find(const std::string& name) {
+  const MeshName given = mesh_name(name);
+  fs::path path;
+  switch (given.kind) {
+    case MeshName::Kind::kPackage:
+      path = in_package(name, given.rest);
+      break;
+    case MeshName::Kind::kFile:
+      path = below(folder_, given.rest);
+      break;
+    case MeshName::Kind::kPath:
+      path = folder_ / given.rest;
+      break;
+    case MeshName::Kind::kOtherScheme:
+      throw Error(name, "only package:// and file:// can be followed");
+  }
+  path = path.lexically_normal();
+  if (is_file(path)) return path;
+  if (name.find("$(") != name.npos || name.find("${") != name.npos) throw Error(name, kIsForXacro);
+  throw Error(name, "there is no such file: " + path.string());
+}
+
+}  // namespace spherule::internal

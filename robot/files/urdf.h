@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/robot/files/urdf.h>
-// #include <spherule/spheretree/atomic_file.h>
+// #include <spherule/base/files.h>
 // #include <cassert>
 //
 // const auto path = std::filesystem::temp_directory_path() / "spherule_example.urdf";
@@ -18,7 +18,7 @@
 // assert(robot.model.variable_count() == 1 && robot.links[0].collision.size() == 1);
 // @endcode
 
-#include "robot/model/robot_description.h"
+#include "robot/model/robot_model.h"
 
 #include <filesystem>
 #include <map>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/formats/sphere_formats.h"
 
-#include "robot/files/internal/format_text.h"
-#include "robot/formats/internal/sphere_documents.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/text.h"
+#include "robot/files/format_text.h"
+#include "robot/formats/sphere_documents.h"
 
 #include <algorithm>
 #include <cmath>

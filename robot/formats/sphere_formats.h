@@ -67,7 +67,7 @@ enum class SphereFormat {
   kMorphit,     // {"centers":[..],"radii":[..],...}: one mesh
   kIrmv,        // {"link":{"BiggesetSphere":[..],"SubSpheres":{..}}} (spelt so)
   kBradshaw,    // .sph of the sphere-tree toolkit: one mesh
-  kSphereFile,  // SPHERES.json (spheretree/sphere_file.h): one mesh
+  kSphereFile,  // SPHERES.json (io/sphere_file.h): one mesh
 };
 
 // "spherized URDF", "cuRobo yml", ...: for messages and tables.

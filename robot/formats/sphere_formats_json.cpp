@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/internal/spheres_in_metres.h"
-#include "robot/formats/internal/sphere_documents.h"
-#include "spheretree/error.h"
-#include "spheretree/text/parse_json.h"
+#include "base/error.h"
+#include "base/json.h"
+#include "robot/files/format_text.h"
+#include "robot/formats/sphere_documents.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/internal/format_text.h"
-#include "robot/files/internal/mesh_name.h"
-#include "robot/files/internal/xacro.h"
-#include "robot/formats/internal/sphere_documents.h"
-#include "robot/formats/internal/sphere_leaves.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "robot/files/format_text.h"
+#include "robot/files/mesh_path.h"
+#include "robot/files/xml_file.h"
+#include "robot/formats/sphere_documents.h"
+#include "robot/formats/sphere_leaves.h"
 
 #include <map>
 #include <memory>

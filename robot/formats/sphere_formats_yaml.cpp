@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/formats/internal/sphere_documents.h"
-#include "robot/formats/internal/yaml_nodes.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
-#include "spheretree/text/text.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/text.h"
+#include "robot/formats/sphere_documents.h"
+#include "robot/formats/yaml_nodes.h"
 
 #include <optional>
 #include <set>

@@ -17,7 +17,7 @@
 // assert(spherule::kinematics_error_bound(robot, 1.0) < 1e-12);
 // @endcode
 
-#include "collide/mechanism_check.h"
+#include "collide/mechanism/mechanism_check.h"
 #include "robot/model/robot_model.h"
 
 #include <span>

@@ -13,8 +13,8 @@
 // assert(robot.links()[0].trees[0]->spheres()[0].radius == 0.1);
 // @endcode
 
+#include "geometry/sphere.h"
 #include "robot/model/robot_model.h"
-#include "spheretree/sphere.h"
 
 #include <span>
 #include <string>

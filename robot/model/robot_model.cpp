@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/model/robot_model.h"
 
-#include "collide/kernels/check_cache.h"
-#include "spheretree/error.h"
-#include "spheretree/moved_from.h"
-#include "spheretree/text/nearest_name.h"
+#include "base/error.h"
+#include "base/moved_from.h"
+#include "base/text.h"
+#include "collide/kernels/plan_trees.h"
+#include "robot/model/link_spheres.h"
+#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -177,6 +181,16 @@ int RobotModel::require_link(std::string_view name) const {
 int RobotModel::find_joint(std::string_view name) const {
   const auto found = joint_index_.find(name);
   return found == joint_index_.end() ? -1 : found->second;
+}
+
+RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres) {
+  for (const LinkSpheres& link : spheres) {
+    robot.require_link(link.link);
+    if (!link.spheres.empty()) {
+      robot.attach(link.link, std::make_shared<const SphereTree>(build_tree(link.spheres)));
+    }
+  }
+  return robot;
 }
 
 }  // namespace spherule

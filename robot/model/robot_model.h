@@ -18,19 +18,22 @@
 // assert(robot.variable_count() == 2 && robot.find_link("hand") == 2);
 // @endcode
 
-#include "spheretree/moved_from.h"
-#include "spheretree/pose.h"
+#include "base/moved_from.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace spherule {
@@ -154,6 +157,49 @@ class RobotModel {
   std::vector<int> variable_joints_;
   bool has_mimics_ = false;
   std::shared_ptr<internal::CheckCache> check_cache_;
+};
+
+}  // namespace spherule
+
+// A robot as a file describes it: its mechanism, and the shapes of its links.
+//
+// @code{.cpp}
+//
+// spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
+// const spherule::Primitive box = spherule::Box{.size = {0.1, 0.1, 1.0}};
+// robot.links = {{.name = "base", .collision = {{.name = "post", .geometry = box}}}};
+// assert(robot.links.size() == robot.model.links().size());
+// @endcode
+
+namespace spherule {
+
+// A mesh in a file. Times `scale`, coordinate by coordinate, it is in metres: of formats that state
+// a unit (DAE, 3MF, glTF) what is scaled is in metres before, of others the file's own numbers are.
+// A negative factor mirrors.
+struct MeshFile {
+  std::filesystem::path path;
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+};
+
+// A shape that is rigidly attached to a link.
+struct LinkShape {
+  std::string name;  // often empty
+  Pose link_from_shape{};
+  std::variant<MeshFile, Primitive> geometry;
+};
+
+// What a link looks like and what stands for it in collision checks, in metres.
+struct LinkDescription {
+  std::string name;
+  std::vector<LinkShape> visual{};
+  std::vector<LinkShape> collision{};
+};
+
+// A robot as a file describes it. No mesh is read and no tree is built yet: `model` has no trees.
+struct RobotDescription {
+  std::string name;
+  RobotModel model;
+  std::vector<LinkDescription> links{};  // in the order of model.links()
 };
 
 }  // namespace spherule

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/free_boxes.h"
 
-#include "spheretree/error.h"
-#include "spheretree/moved_from.h"
+#include "base/error.h"
+#include "base/moved_from.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/pairs/link_pairs_file.h"
-
-#include "robot/model/internal/link_paths.h"
-#include "robot/pairs/internal/pair_space.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/crc64.h"
-#include "spheretree/error.h"
+#include "base/crc64.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "robot/model/link_paths.h"
+#include "robot/pairs/link_pairs.h"
+#include "robot/pairs/pair_search.h"
 
 #include <bit>
 #include <concepts>

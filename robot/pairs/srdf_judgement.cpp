@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/srdf_judgement.h"
 
-#include "robot/model/internal/link_paths.h"
-#include "robot/pairs/internal/proof_scope.h"
+#include "robot/model/link_paths.h"
+#include "robot/pairs/proof_scope.h"
 
 #include <algorithm>
 #include <array>

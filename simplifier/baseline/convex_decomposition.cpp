@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/convex_decomposition.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "mesh/mesh_report.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/convex_hull.h"
-#include "spheretree/error.h"
 
 #include <Eigen/Geometry>
 

@@ -15,7 +15,7 @@
 // assert(parts.size() == 1 && parts[0].triangles.size() == 4);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/mesh_deviation.h"
 
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/convex_hull.h"
 
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

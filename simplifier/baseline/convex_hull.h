@@ -13,7 +13,7 @@
 // assert(hull.mesh.triangles.size() == 4 && hull.expansion > 0.01);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
 #include <Eigen/Core>
 

@@ -14,7 +14,7 @@
 // assert(reduced.mesh.triangles.size() == 2 && reduced.deviation.loss.upper < 0.01);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/mesh_deviation.h"
 
 #include <cstddef>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/hubbard_spheres.h"
 
+#include "base/error.h"
+#include "base/threads.h"
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/error.h"
 
 #include <algorithm>
 #include <cmath>

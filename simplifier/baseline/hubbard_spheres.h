@@ -14,7 +14,7 @@
 // assert(spheres.levels[0].size() == 1 && spheres.levels[1].size() <= 8);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/sphere_levels.h"
 
 #include <cstddef>

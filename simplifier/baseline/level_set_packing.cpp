@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/level_set_packing.h"
 
-#include "mesh/geometry/mesh_box.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/internal/sampling_checks.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <limits>

@@ -13,8 +13,8 @@
 // assert(spheres.size() == 10);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 
 #include <cstddef>
 #include <vector>

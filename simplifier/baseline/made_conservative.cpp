@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/made_conservative.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "geometry/triangle_mesh.h"
 
 namespace spherule {
 

@@ -14,9 +14,9 @@
 // assert(grown.certificate.covered && grown.inflation > 0.05 && grown.inflation < 0.06);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/certificate.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/certificate.h"
 
 #include <span>
 #include <vector>

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/medial_axis.h"
 
+#include "base/error.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/enclosing_sphere.h"
 #include "simplifier/baseline/internal/best_reduction.h"
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/sampling_checks.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
 #include "simplifier/baseline/internal/surface_samples.h"
-#include "simplifier/support/parallel.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <cmath>

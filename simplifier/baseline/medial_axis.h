@@ -15,9 +15,9 @@
 // assert(!made.spheres.empty() && made.spheres.size() <= 8 && made.protrusion > 0.0);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/sphere_levels.h"
-#include "spheretree/sphere.h"
 
 #include <cstddef>
 #include <cstdint>

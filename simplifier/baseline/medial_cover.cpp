@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/medial_cover.h"
 
+#include "base/rounding.h"
+#include "base/threads.h"
 #include "simplifier/baseline/internal/best_reduction.h"
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/simplified_probe.h"
 #include "simplifier/baseline/internal/simplified_solid.h"
 #include "simplifier/proof/protrusion.h"
-#include "simplifier/stage2/paper/inscribed_spheres.h"
-#include "simplifier/support/thread_limit.h"
-#include "spheretree/rounding.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
 
 #include <array>
 #include <cstddef>

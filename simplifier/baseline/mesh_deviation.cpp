@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/mesh_deviation.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "mesh/mesh_distance.h"
-#include "mesh/point_triangle.h"
-#include "mesh/shells/closed_shells.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/point_triangle.h"
+#include "geometry/shells.h"
+#include "geometry/triangle_mesh.h"
 
 #include <algorithm>
 #include <array>

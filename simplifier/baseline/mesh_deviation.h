@@ -14,8 +14,8 @@
 // assert(deviation.loss.lower > 0.7 && deviation.excess.upper < 0.01);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/bounds.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/certificate.h"
 
 #include <cstddef>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/octree_spheres.h"
 
-#include "mesh/mesh_distance.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "geometry/mesh_distance.h"
 #include "simplifier/baseline/internal/cell_octree.h"
 #include "simplifier/baseline/internal/cell_options.h"
-#include "simplifier/stage2/cover_checks.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "simplifier/stage2/cover_moves.h"
 
 #include <cmath>
 #include <cstdint>

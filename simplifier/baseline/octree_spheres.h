@@ -13,7 +13,7 @@
 // assert(made.tree.depth() == 3 && made.step < 0.2);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/filling.h"
 #include "spheretree/sphere_tree.h"
 

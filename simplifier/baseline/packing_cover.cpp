@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/packing_cover.h"
 
+#include "base/threads.h"
 #include "simplifier/baseline/internal/simplified_solid.h"
-#include "simplifier/stage2/cover_checks.h"
-#include "simplifier/stage2/paper/inscribed_spheres.h"
-#include "simplifier/support/parallel.h"
-#include "simplifier/support/thread_limit.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
 
 #include <algorithm>
 #include <atomic>

@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/simplifier/baseline/packing_cover.h>
-// #include <spherule/simplifier/certificate.h>
+// #include <spherule/simplifier/types/certificate.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -17,9 +17,9 @@
 // assert(spherule::certify(tetrahedron, cover.spheres, options).covered);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
 
 namespace spherule {
 

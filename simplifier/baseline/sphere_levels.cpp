@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/sphere_levels.h"
 
-#include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "geometry/enclosing_sphere.h"
 
 #include <algorithm>
 #include <cstddef>

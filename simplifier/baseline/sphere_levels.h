@@ -13,8 +13,8 @@
 // assert(made.tree.root().radius >= 2.0);  // made larger: it encloses its children
 // @endcode
 
+#include "geometry/sphere.h"
 #include "spheretree/level_tree.h"
-#include "spheretree/sphere.h"
 
 #include <cstdint>
 #include <span>

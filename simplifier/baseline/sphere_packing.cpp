@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/sphere_packing.h"
 
-#include "simplifier/stage2/cover_checks.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "simplifier/stage2/cover_moves.h"
 
 #include <utility>
 

@@ -14,10 +14,10 @@
 // assert(packing.error <= 0.25 && packing.inflated.size() == packing.spheres.size());
 // @endcode
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/voxelisation.h"
 
+#include "base/error.h"
 #include "simplifier/baseline/internal/cell_octree.h"
 #include "simplifier/baseline/internal/cell_options.h"
-#include "simplifier/stage2/cover_checks.h"
-#include "spheretree/error.h"
+#include "simplifier/stage2/cover_moves.h"
 
 #include <cstdint>
 #include <sstream>

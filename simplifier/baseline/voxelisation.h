@@ -13,9 +13,9 @@
 // assert(voxels.spheres.size() == voxels.surface + voxels.inside && voxels.step < 0.2);
 // @endcode
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/filling.h"
-#include "spheretree/sphere.h"
 
 #include <Eigen/Core>
 

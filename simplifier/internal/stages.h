@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "simplifier/certificate.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
-#include "simplifier/levels.h"
+#include "geometry/mesh_distance.h"
 #include "simplifier/simplify.h"
 #include "simplifier/solid/clearance.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/levels.h"
 
 #include <cstddef>
 #include <span>

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "mesh/shells/closed_shells.h"
-#include "simplifier/certificate.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/shells.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/zones.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/zones.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,5 +38,22 @@ double greatest_in(const Zone& zone, std::span<const Sphere> spheres,
 Bounds protrusion_over_mesh(const MeshDistance& distance, const ClosedShells& shells,
                             const Clearance& clearance, const SpheresToProve& spheres,
                             double tolerance);
+
+// Volume of the union of the spheres over the volume inside of a closed mesh, where the winding
+// number is not 0: estimated, each from the exact lengths within it of fixed lines, at most 4096
+// (fewer where there are many triangles), one through each cell of a grid. Neither may be empty.
+// None where no line meets the one or the other: small things far apart, a mesh without volume.
+std::optional<double> estimate_volume_ratio(const TriangleMesh& mesh,
+                                            std::span<const Sphere> spheres);
+
+struct EstimatedVolume {
+  double volume = 0.0;
+  double error = 0.0;  // standard error
+};
+
+// Volume of what stage 1 fills, S without the inside of a closed mesh: estimated from the exact
+// lengths of such lines, with the standard error as their differences show it (on average it is
+// rather stated too large).
+EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external);
 
 }  // namespace spherule::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/nearest_cells.h"
 
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/solid/box_cell.h"
-#include "simplifier/solid/nearest_sphere.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/solid/sphere_hierarchy.h"
 
 #include <Eigen/Geometry>

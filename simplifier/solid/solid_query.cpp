@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/solid_query.h"
 
+#include "base/rounding.h"
 #include "simplifier/solid/medial_ascent.h"
-#include "simplifier/solid/nearest_sphere.h"
-#include "spheretree/rounding.h"
+#include "simplifier/solid/sphere_hierarchy.h"
 
 #include <algorithm>
 

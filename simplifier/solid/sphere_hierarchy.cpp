@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/solid/sphere_hierarchy.h"
 
-#include "simplifier/support/parallel.h"
-#include "spheretree/median_split.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/median_split.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/zones.h"
-#include "spheretree/median_split.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "geometry/median_split.h"
+#include "simplifier/types/zones.h"
 
 #include <Eigen/Geometry>
 

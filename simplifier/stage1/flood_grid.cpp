@@ -1,20 +1,101 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage1/flood_grid.h"
 
-#include "simplifier/stage1/sphere_of_places.h"
-#include "simplifier/stage1/too_many_cells.h"
-#include "simplifier/support/parallel.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "simplifier/stage1/flood_refinement.h"
+#include "simplifier/types/external_spheres.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <iomanip>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <string>
 
 namespace spherule::internal {
+
+using Eigen::Vector3d;
+
+LocalDiameter::LocalDiameter(double diameter, double step, std::span<const Zone> zones,
+                             std::span<const double> zone_steps)
+    : radius_(diameter / 2.0), least_radius_(radius_), zones_(zones) {
+  for (std::size_t i = 0; i < zones.size(); ++i) {
+    Part part{zones[i].min_external_diameter.value_or(diameter) / 2.0, 0};
+    // So many are refused by whoever makes the grid.
+    constexpr int kMostHalvings = 64;
+    while (part.halvings < kMostHalvings && std::ldexp(step, -part.halvings) > zone_steps[i]) {
+      ++part.halvings;
+    }
+    most_halvings_ = std::max(most_halvings_, part.halvings);
+    least_radius_ = std::min(least_radius_, part.radius);
+    parts_.push_back(part);
+  }
+}
+
+LocalDiameter::Needed LocalDiameter::needed(const Vector3d& from, const Vector3d& to) const {
+  Needed least{radius_, kNoZone};
+  zones_.holding(from, to, [&](std::size_t i) {
+    if (parts_[i].radius < least.radius && certainly_contains(zones_[i].shape, from) &&
+        (from == to || certainly_contains(zones_[i].shape, to))) {
+      least = {parts_[i].radius, static_cast<std::uint32_t>(i)};
+    }
+  });
+  return least;
+}
+
+LocalDiameter::Near LocalDiameter::near(const Vector3d& center, double reach) const {
+  Near result{radius_, radius_, 0};
+  zones_.near(center, reach, [&](std::size_t i) {
+    const ZoneShape& shape = zones_[i].shape;
+    // A zone that would change nothing need not be examined.
+    if (parts_[i].radius >= result.greatest && parts_[i].halvings <= result.halvings &&
+        parts_[i].radius >= result.least) {
+      return reach;
+    }
+    if (distance_lower(shape, center) > reach) return reach;
+    result.least = std::min(result.least, parts_[i].radius);
+    result.halvings = std::max(result.halvings, parts_[i].halvings);
+    if (parts_[i].radius < result.greatest && certainly_contains(shape, center, reach)) {
+      result.greatest = parts_[i].radius;
+    }
+    return reach;
+  });
+  return result;
+}
+
+namespace {
+
+// What is advised has some room.
+constexpr double kMargin = 1.2;
+constexpr double kEdgeMargin = 1.1;
+
+std::string too_many(double count, double edge, double most) {
+  const double larger = kMargin * count / most;
+  std::ostringstream reason;
+  reason << std::setprecision(3) << "too fine for a model of this size: up to " << count
+         << " cells with an edge of " << edge << " would be needed, and " << most
+         << " is the most; with a min external diameter " << std::ceil(10.0 * larger) / 10.0
+         << " times as large, or both it and the max error "
+         << std::ceil(10.0 * std::sqrt(larger)) / 10.0
+         << " times, or with the model in parts, memory suffices";
+  if (most < static_cast<double>(ExternalOptions::kMostCells)) {
+    reason << "; max_cells may be larger";
+  }
+  return reason.str();
+}
+
+}  // namespace
+
+TooManyCells::TooManyCells(double most_foreseen, double least_foreseen, double edge,
+                           std::size_t max_cells)
+    : Error("grid step", too_many(most_foreseen, edge, static_cast<double>(max_cells))),
+      coarsening_(kEdgeMargin * std::sqrt(least_foreseen / static_cast<double>(max_cells))) {}
+
 namespace {
 
 // Width of the layer of nodes that is kept at the finest step, in steps (docs/covering.md, stage

@@ -1,23 +1,135 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "mesh/shells/disjoint_sets.h"
-#include "simplifier/external_spheres.h"
-#include "simplifier/stage1/local_diameter.h"
-#include "simplifier/stage1/sphere_displacement.h"
-#include "spheretree/sphere.h"
+#include "base/disjoint_sets.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/sphere.h"
+#include "simplifier/solid/zone_index.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/zones.h"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace spherule::internal {
+
+// D as a function of place, as radii, and the grid steps that follow it. At a point x a sphere of
+// radius rho(x) has to have room: D / 2, or d / 2 in a zone of its own d, the least of them where
+// zones overlap. Zones are closed and convex, so the segment between two points of one zone
+// needs no more than that zone requires.
+class LocalDiameter {
+ public:
+  // A zone's grid step is `step` halved as often as it takes to be no longer than
+  // `zone_steps[i]`.
+  LocalDiameter(double diameter, double step, std::span<const Zone> zones,
+                std::span<const double> zone_steps);
+
+  // Where no zone requires less.
+  double radius() const { return radius_; }
+  // What a zone requires.
+  double radius_of(std::uint32_t zone) const { return parts_[zone].radius; }
+  // Of all places.
+  double least_radius() const { return least_radius_; }
+
+  // A radius with the number of the zone that requires it, kNoZone if none does.
+  struct Needed {
+    double radius;
+    std::uint32_t zone;
+  };
+  static constexpr std::uint32_t kNoZone = 0xffffffff;
+
+  // Never less than rho at the point (rounding may take it for a point beside a zone).
+  Needed at(const Eigen::Vector3d& point) const { return needed(point, point); }
+  // Never less than rho at any point of the segment: of the zones that hold both ends, the
+  // least that one requires. It is at least what at() says of either end, and just that if both
+  // ends need it by the same zone, or one of them by none.
+  double on_segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    return needed(from, to).radius;
+  }
+  // Of all points within `reach` of the center: never more than the least rho, and never less than
+  // the greatest; and how often the grid step is to be halved for them.
+  struct Near {
+    double least;
+    double greatest;
+    int halvings;
+  };
+  Near near(const Eigen::Vector3d& center, double reach) const;
+
+  // Of all zones.
+  int most_halvings() const { return most_halvings_; }
+
+ private:
+  struct Part {
+    double radius;
+    int halvings;
+  };
+
+  Needed needed(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  double radius_;
+  double least_radius_;
+  int most_halvings_ = 0;
+  ZoneIndex zones_;
+  std::vector<Part> parts_;  // as the zones
+};
+
+// The grid of stage 1 would have more cells than it may.
+class TooManyCells : public Error {
+ public:
+  // So many cells, of this edge the finest, are foreseen, the least if most large ones need not be
+  // halved. The reason says what to choose so that memory suffices for the most.
+  TooManyCells(double most_foreseen, double least_foreseen, double edge, std::size_t max_cells);
+  // How many times longer the edges of the cells have to be, with a margin: above 1. The least
+  // number goes with the area of the surface over their square.
+  double coarsening() const { return coarsening_; }
+
+ private:
+  double coarsening_;
+};
+
+// Whether a sphere of radius rho can provably be displaced along the segment between the centres of
+// two spheres that are free of the mesh grown by the padding: by bisection, up to 2^8 pieces. On a
+// piece of length g between clearances c1 and c2 the clearance is at least (c1 + c2 - g) / 2. It
+// fails only where the clearance comes below rho + (length of the displacement) / 2^8 somewhere.
+class SphereDisplacement {
+ public:
+  // Of a bound of a distance that is passed to MeshDistance as a limit: usually more than all
+  // roundings. Where it is not, the limit is returned as the lower bound: true, but less room.
+  static constexpr double kLimitUp = 1.0 + 1e-5;
+
+  SphereDisplacement(const MeshDistance& distance, double padding)
+      : distance_(distance), padding_(padding) {}
+
+  static constexpr int kMostBisections = 8;
+  bool is_free(const Sphere& a, const Sphere& b, double rho,
+               int bisections = kMostBisections) const {
+    const double gap = distance_upper(a.center, b.center);
+    if (sub_down(add_down(a.radius, b.radius), gap) >= 2.0 * rho * kRelativeUp) return true;
+    if (bisections == 0) return false;
+    Sphere middle{(a.center + b.center) / 2.0, 0.0};
+    // Usually the surface is no further from there.
+    const double limit = (std::min(a.radius, b.radius) + padding_ + 0.5 * gap) * kLimitUp;
+    middle.radius = sub_down(distance_(middle.center, limit).lower, padding_);
+    return middle.radius >= rho && is_free(a, middle, rho, bisections - 1) &&
+           is_free(middle, b, rho, bisections - 1);
+  }
+
+ private:
+  const MeshDistance& distance_;
+  double padding_;
+};
 
 // The free space of a sphere of radius rho around a mesh, as a sparse octree over a cube that
 // leaves the sphere room on every side of the mesh; rho and the finest step h are those of the

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/cover_blocks.h"
 
+#include "base/random.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/median_split.h"
 #include "simplifier/solid/sphere_hierarchy.h"
-#include "simplifier/support/parallel.h"
-#include "simplifier/support/random.h"
-#include "simplifier/zones.h"
-#include "spheretree/median_split.h"
-#include "spheretree/rounding.h"
+#include "simplifier/types/zones.h"
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "simplifier/cover.h"
-#include "simplifier/solid/box_cell.h"
+#include "base/stopwatch.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/sphere.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_fitter.h"
-#include "simplifier/support/stopwatch.h"
-#include "spheretree/sphere.h"
+#include "simplifier/types/cover.h"
 
 #include <Eigen/Geometry>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/solid_cells.h"
 
-#include "simplifier/solid/cube.h"
-#include "simplifier/solid/furthest_outside.h"
-#include "simplifier/support/parallel.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "simplifier/solid/cells.h"
+#include "simplifier/solid/solid_query.h"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/sphere.h"
 #include "simplifier/proof/proof.h"
-#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/solid/solid_query.h"
-#include "simplifier/stage2/local_error.h"
-#include "simplifier/stage2/surface_extent.h"
-#include "spheretree/sphere.h"
+#include "simplifier/stage2/cover_problem.h"
 
 #include <Eigen/Core>
 

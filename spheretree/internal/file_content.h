@@ -4,7 +4,7 @@
 // The content of our files apart from the file system, for tests and fuzzers. `name` becomes the
 // subject of an Error.
 
-#include "spheretree/sphere_file.h"
+#include "io/sphere_file.h"
 #include "spheretree/sphere_tree.h"
 
 #include <string>

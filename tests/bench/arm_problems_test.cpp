@@ -2,10 +2,10 @@
 // What planners are given in the scenes of an arm, and what becomes of it.
 #include "bench/robot_edges/arm_problems.h"
 
+#include "base/error.h"
 #include "bench/planning/path_check.h"
 #include "bench/planning/problem_study.h"
 #include "bench/robot_edges/robot_scenes.h"
-#include "spheretree/error.h"
 #include "tests/bench/toy_arm.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/fit_parts.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 
 #include <gtest/gtest.h>
 

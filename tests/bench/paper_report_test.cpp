@@ -2,11 +2,11 @@
 // What is made of the paper's comparisons: the search for the fewest spheres at equal protrusion,
 // figure 2, and the page.
 
+#include "base/files.h"
 #include "bench/paper/equal_protrusion.h"
 #include "bench/paper/figure2.h"
 #include "bench/paper/page.h"
 #include "bench/scenes/shapes.h"
-#include "spheretree/atomic_file.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's comparisons: what they count, and that conservative rows miss nothing.
 
+#include "base/error.h"
+#include "base/files.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/paper/fcl_convex_checker.h"
 #include "bench/paper/figures.h"
@@ -9,8 +11,6 @@
 #include "bench/paper/table1.h"
 #include "bench/scenes/mesh_facts.h"
 #include "bench/scenes/shapes.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 
 #include <gtest/gtest.h>
 

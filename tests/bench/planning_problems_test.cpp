@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What planners are given, how their paths are examined again, and how they are compared.
+#include "base/error.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/oracle.h"
 #include "bench/planning/path_check.h"
@@ -8,7 +9,6 @@
 #include "bench/planning/problems.h"
 #include "bench/planning/process_points.h"
 #include "bench/scenes/torch.h"
-#include "spheretree/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/shapes.h"
 
+#include "base/error.h"
 #include "bench/scenes/mesh_facts.h"
 #include "bench/scenes/solids.h"
 #include "bench/scenes/turn_between.h"
-#include "spheretree/error.h"
 
 #include <gtest/gtest.h>
 

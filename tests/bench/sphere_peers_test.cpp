@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The peers in single precision, which promise no less than a miss: their radii are padded.
+#include "base/error.h"
 #include "bench/checkers/flat_scan_checker.h"
 #include "bench/checkers/scene_reach.h"
 #include "bench/checkers/tree_checker.h"
 #include "bench/scenes/robot.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/support/random.h"
 #if defined(SPHERULE_BENCH_BULLET)
 #include "bench/checkers/bullet_sphere_checker.h"

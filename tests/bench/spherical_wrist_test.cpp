@@ -2,8 +2,8 @@
 // Postures in closed form against forward kinematics.
 #include "bench/scenes/spherical_wrist.h"
 
+#include "base/error.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
 #include "bench/checkers/fcl_solid.h"
 #include "bench/scenes/shapes.h"
 #include "bench/scenes/solids.h"
@@ -8,7 +9,6 @@
 #include "bench/studies/refined_cover.h"
 #include "bench/studies/turns.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

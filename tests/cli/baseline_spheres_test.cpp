@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/sphere_file.h"
+#include "io/sphere_file.h"
 #include "spheretree/tree_file.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/support/effort.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CAD files as the command reads them: in a process of its own, whose end is an error at most.
+#include "base/error.h"
+#include "base/files.h"
 #include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
-#include "spheretree/error.h"
-#include "spheretree/program_output.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/simplifier/cad/cad_assembly.h"
 #include "tests/simplifier/cad/cad_parts.h"

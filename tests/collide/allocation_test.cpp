@@ -3,13 +3,12 @@
 // on trees that build_tree makes, and answers right where no memory is to be had.
 
 #include "collide/collide.h"
-#include "collide/mechanism_check.h"
-#include "collide/mesh_contact.h"
-#include "collide/mesh_tree.h"
+#include "collide/mechanism/mechanism_check.h"
+#include "collide/meshes/mesh_contact.h"
+#include "collide/meshes/mesh_tree.h"
 #include "collide/pair_cache.h"
 #include "collide/search/traversal.h"
 #include "collide/sweep.h"
-#include "collide/within.h"
 #include "spheretree/build.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/trees.h"

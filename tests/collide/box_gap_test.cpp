@@ -5,7 +5,6 @@
 #include "collide/search/box_gap.h"
 
 #include "collide/collide.h"
-#include "collide/within.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"

@@ -4,7 +4,7 @@
 
 #include "collide/mechanism/coherence_cache.h"
 
-#include "collide/mechanism_check.h"
+#include "collide/mechanism/mechanism_check.h"
 #include "tests/collide/scene_random.h"
 #include "tests/collide/trees.h"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distance bounds against 100 digits over all pairs.
 
-#include "collide/distance.h"
-
+#include "collide/collide.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_scene.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Oracle of motions, which shares no code with the library: the formula of collide/motion.h in
-// any floating-point type, from what the motion was made of.
+// Oracle of motions, which shares no code with the library: the formula of collide/motion/motion.h
+// in any floating-point type, from what the motion was made of.
 
 #include "tests/collide/exact_pose.h"
 

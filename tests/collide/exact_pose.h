@@ -4,7 +4,7 @@
 // What a pose does to a point, in whatever numbers a test wants. It shares no code with the
 // library: the rotation of q / norm(q) is rational in the components of q.
 
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
 #include <array>
 

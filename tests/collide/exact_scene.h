@@ -5,7 +5,7 @@
 // rational numbers, and in floating-point numbers of 100 digits where a root is needed. These are
 // slow to compile; exact_pose.h and scene_random.h go without them.
 
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
 #include "tests/collide/exact_pose.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

@@ -4,7 +4,7 @@
 // Signed distances of points to solids in numbers of 100 digits: an oracle that shares no code with
 // the library.
 
-#include "collide/primitive.h"
+#include "collide/solids/primitive.h"
 #include "tests/collide/exact_scene.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 #include "spheretree/build.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/mechanism_check.h"
+#include "collide/mechanism/mechanism_check.h"
 
+#include "base/error.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Contact of covered meshes, against rational numbers and against what is built in.
 
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 
+#include "base/error.h"
+#include "geometry/enclosing_sphere.h"
 #include "spheretree/build.h"
-#include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rays and insides, against rational numbers and against what is built in.
 
-#include "collide/solids/mesh_inside.h"
+#include "collide/meshes/mesh_inside.h"
 
-#include "mesh/geometry/ray.h"
+#include "geometry/ray.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/scene_random.h"
 

@@ -4,9 +4,9 @@
 
 #include "collide/meshes/mesh_search.h"
 
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 #include "collide/meshes/packed_mesh.h"
-#include "collide/meshes/sphere_triangle.h"
+#include "collide/meshes/triangle_leaves.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
 #include "tests/collide/exact_triangles.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres against triangles, with the distance of point and triangle in 100 digits as the oracle.
 
-#include "collide/mesh_tree.h"
+#include "collide/meshes/mesh_tree.h"
 
+#include "base/error.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres and triangles that come within a clearance, against 100 digits.
 
-#include "collide/mesh_tree.h"
 #include "collide/meshes/mesh_search.h"
+#include "collide/meshes/mesh_tree.h"
 #include "collide/meshes/triangle_leaves.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"

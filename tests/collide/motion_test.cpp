@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Poses along motions against 100 digits.
 
-#include "collide/motion.h"
+#include "collide/motion/motion.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/collide/exact_motion.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far points of a sphere move, against where they are.
 
-#include "collide/mechanism/moved_sphere.h"
-
+#include "collide/mechanism/coherence_cache.h"
 #include "tests/collide/scene_random.h"
 
 #include <Eigen/Geometry>

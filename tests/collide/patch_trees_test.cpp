@@ -3,7 +3,7 @@
 
 #include "collide/meshes/patch_trees.h"
 
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/point_cloud.h"
 
+#include "base/error.h"
 #include "spheretree/check.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres and solids next to contact, against 100 digits.
 
-#include "collide/primitive.h"
+#include "collide/solids/primitive.h"
 
+#include "base/error.h"
 #include "collide/solids/solid_pose.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_solids.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"

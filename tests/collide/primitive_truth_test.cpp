@@ -2,7 +2,7 @@
 // Solids against FCL, which has a closed formula for a sphere and each of them: a second opinion on
 // what the solids are and where a pose puts them. FCL is no judge within 1e-6 of contact.
 
-#include "collide/primitive.h"
+#include "collide/solids/primitive.h"
 #include "spheretree/build.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/rounding_mode.h"
+#include "tests/support/rounding_mode.h"
 
-#include "collide/mechanism_check.h"
-#include "collide/mesh_tree.h"
+#include "base/rounding.h"
+#include "collide/mechanism/mechanism_check.h"
+#include "collide/meshes/mesh_tree.h"
 #include "collide/pair_cache.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
-#include "spheretree/refit.h"
 #include "spheretree/sphere_tree.h"
-#include "tests/support/rounding_mode.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

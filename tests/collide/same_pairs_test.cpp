@@ -3,10 +3,10 @@
 // contact, where the pads decide: spheres against spheres, against triangles, and against needles,
 // whose distance in double is loose.
 
-#include "collide/mesh_tree.h"
+#include "collide/meshes/mesh_tree.h"
 #include "collide/meshes/triangle_leaves.h"
+#include "collide/search/nearest_first.h"
 #include "collide/search/queries.h"
-#include "collide/search/sphere_leaves.h"
 #include "spheretree/build.h"
 #include "tests/collide/trees.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spheres so near to a solid mesh that rounding does not tell on which side of it they are.
 
-#include "collide/solid_mesh.h"
+#include "collide/meshes/solid_mesh.h"
 #include "spheretree/build.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"

@@ -2,11 +2,11 @@
 // Spheres and meshes with their inside: tetrahedra next to contact in 100 digits, and shells of all
 // kinds against winding numbers from solid angles.
 
-#include "collide/solid_mesh.h"
+#include "collide/meshes/solid_mesh.h"
 
+#include "base/error.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two meshes of needles within a clearance, against 100 digits, and the boxes that cut it short.
 
-#include "collide/solid_within.h"
+#include "collide/solids/solid_within.h"
 
-#include "collide/solids/node_boxes.h"
+#include "collide/meshes/mesh_inside.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels of the inner loop give the same bits as the portable code, lane by lane.
 
-#include "collide/search/sphere_tests.h"
-
+#include "collide/search/traversal.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/scene_random.h"
 

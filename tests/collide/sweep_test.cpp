@@ -3,7 +3,7 @@
 
 #include "collide/sweep.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/collide/swept_bodies.h"
 #include "tests/support/effort.h"
 

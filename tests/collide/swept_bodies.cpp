@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/collide/swept_bodies.h"
 
-#include "collide/within.h"
+#include "collide/collide.h"
 #include "spheretree/build.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 #include "tests/collide/scene_random.h"
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/instruction_set.h"
+#include "collide/search/instruction_set.h"
 #include "spheretree/sphere_tree.h"
 #include "tests/collide/scene_random.h"
 

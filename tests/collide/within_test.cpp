@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clearances against exact arithmetic and against distance().
 
-#include "collide/within.h"
-
-#include "collide/distance.h"
+#include "base/error.h"
+#include "collide/collide.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"

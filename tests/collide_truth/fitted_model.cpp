@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/collide_truth/fitted_model.h"
 
+#include "base/rounding.h"
 #include "bench/scenes/shapes.h"
-#include "mesh/io/mesh_io.h"
+#include "io/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
-#include "spheretree/rounding.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
 #include "tests/support/zoo.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/checkers/fcl_solid.h"
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Confirmed hits against FCL on the meshes with their insides: the same verdicts, none missed and
 // none extra, down to a micrometre from contact.
-#include "collide/mesh_contact.h"
+#include "collide/meshes/mesh_contact.h"
 #include "tests/collide_truth/fitted_model.h"
 #include "tests/collide_truth/near_contact.h"
 #include "tests/support/effort.h"

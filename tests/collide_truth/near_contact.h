@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 #include "tests/collide_truth/fitted_model.h"
 #include "tests/support/random.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the fuzz targets do with their seeds, and with some mutants of them in every run: coverage
 // guides the search in tests/fuzz/run only.
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The entry of libFuzzer. SPHERULE_FUZZ_TARGET (environment) names the target; with
 // SPHERULE_FUZZ_SEEDS, a folder, the program writes the seeds of the target there and ends.
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/support/temp_dir.h"
 

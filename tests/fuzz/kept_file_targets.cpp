@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/kept_file_targets.h"
 
+#include "base/error.h"
+#include "base/files.h"
 #include "robot/files/srdf.h"
 #include "robot/files/urdf.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 #include "tests/robot/formats/sphere_sets.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/files.h"
 #include "robot/formats/sphere_formats.h"
-#include "robot/pairs/link_pairs_file.h"
-#include "spheretree/atomic_file.h"
+#include "robot/pairs/link_pairs.h"
 #include "tests/fuzz/fuzz_seeds.h"
 #include "tests/fuzz/sealed_content.h"
 #include "tests/robot/box_robots.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/sealed_content.h"
 
-#include "spheretree/crc64.h"
+#include "base/crc64.h"
 #include "tests/mesh/mesh_files.h"
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/zones.h"
+#include "io/sphere_file.h"
+#include "simplifier/types/zones.h"
 #include "spheretree/build.h"
 #include "spheretree/internal/file_content.h"
-#include "spheretree/sphere_file.h"
 #include "tests/fuzz/fuzz_seeds.h"
 #include "tests/fuzz/sealed_content.h"
 

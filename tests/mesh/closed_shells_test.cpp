@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/shells/closed_shells.h"
-
+#include "geometry/shells.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"

@@ -5,7 +5,7 @@
 // the distances to the three edges and, where the foot of the perpendicular falls into the
 // triangle, to the plane.
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/io/length_unit.h"
+#include "io/length_unit.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/zoo.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/mesh_distance.h"
+#include "geometry/mesh_distance.h"
 
 #include "tests/mesh/distance_oracle.h"
 #include "tests/support/effort.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What each format can hold, and what is wrong with broken files.
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/read_files.h"
 #include "tests/support/zoo.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Broken files of every format: reading ends in an Error or in a mesh that can be used.
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/io/mesh_io.h"
+#include "io/mesh_io.h"
 
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"

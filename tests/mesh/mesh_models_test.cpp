@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The real models, where SPHERULE_MODELS names their folder: what we read against the numbers that
 // their manifest.json states (made by another program).
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/support/models.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/mesh_report.h"
+#include "geometry/mesh_report.h"
 
-#include "mesh/geometry/self_intersection.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/self_intersection.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

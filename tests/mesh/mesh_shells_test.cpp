@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Insides of meshes whose triangles do not simply face outwards.
 
-#include "mesh/shells/mesh_shells.h"
-
-#include "collide/solids/mesh_inside.h"
+#include "collide/meshes/mesh_inside.h"
+#include "geometry/shells.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"

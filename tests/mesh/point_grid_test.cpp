@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/geometry/point_grid.h"
-
+#include "geometry/weld.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/point_triangle.h"
+#include "geometry/point_triangle.h"
 
 #include "tests/mesh/distance_oracle.h"
 #include "tests/support/effort.h"

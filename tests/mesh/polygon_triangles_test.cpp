@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/io/internal/polygon_triangles.h"
+#include "io/polygon_triangles.h"
 
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"

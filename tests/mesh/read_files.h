@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/io/mesh_io.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "io/mesh_io.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // COLLADA and glTF: what they show and where, against assimp and by hand, and files that are broken
 // or made to do harm.
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/read_files.h"
 #include "tests/mesh/scene_files.h"

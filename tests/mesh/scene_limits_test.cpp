@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Small files that show their parts, or refer to their numbers, very many times. Each took minutes
 // or gigabytes before it had a limit.
-#include "mesh/io/internal/scene_budget.h"
+#include "io/scene_budget.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/mesh/read_files.h"
 #include "tests/mesh/scene_files.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/spheretree/temporary_folder.h"
 
 #include <gtest/gtest.h>

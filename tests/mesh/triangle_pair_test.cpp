@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two triangles in one frame, against rational numbers.
 
-#include "mesh/geometry/triangle_pair.h"
-
+#include "base/rounding.h"
 #include "collide/search/relative_pose.h"
-#include "spheretree/rounding.h"
+#include "geometry/triangles.h"
 #include "tests/collide/exact_triangles.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"

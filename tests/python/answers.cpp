@@ -4,7 +4,6 @@
 
 #include "bench/python/cell_files.h"
 #include "collide/collide.h"
-#include "collide/distance.h"
 #include "spheretree/tree_file.h"
 
 #include <exception>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What certify() refuses, and what it does not come to an end with unless it does.
-#include "simplifier/certificate.h"
-#include "simplifier/cover.h"
+#include "base/error.h"
 #include "simplifier/cover_breakdown.h"
-#include "simplifier/external_spheres.h"
-#include "simplifier/levels.h"
 #include "simplifier/repair.h"
-#include "spheretree/error.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/levels.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"

@@ -2,7 +2,7 @@
 // Large solids are covered block by block; here blocks are small, so that small solids have some.
 #include "simplifier/stage2/cover_blocks.h"
 
-#include "mesh/mesh_distance.h"
+#include "geometry/mesh_distance.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "tests/simplifier/fitting.h"

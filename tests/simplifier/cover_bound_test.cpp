@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/cover.h"
+#include "simplifier/types/cover.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/zoo.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/cover_breakdown.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/zoo.h"
 

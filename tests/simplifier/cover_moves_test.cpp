@@ -2,7 +2,6 @@
 // The moves between two searches of cover(), and what more of them are worth.
 #include "simplifier/stage2/cover_moves.h"
 
-#include "simplifier/stage2/cover_shift.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/sphere_hash.h"

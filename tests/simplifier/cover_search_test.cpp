@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/search/cover_search.h"
 
-#include "simplifier/cover.h"
-#include "simplifier/stage2/search/cover_core.h"
-#include "simplifier/stage2/search/cover_yield.h"
-#include "simplifier/stage2/search/lazy_cover_search.h"
+#include "simplifier/types/cover.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/cover.h"
+#include "simplifier/types/cover.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/external_spheres.h"
+#include "simplifier/types/external_spheres.h"
 
-#include "mesh/mesh_distance.h"
+#include "base/error.h"
+#include "geometry/mesh_distance.h"
 #include "simplifier/internal/stages.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -4,11 +4,11 @@
 // Both stages of the simplifier with lengths as shares of the model's size, for tests that fit many
 // models coarsely.
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/certificate.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
 #include "tests/support/effort.h"
 
 #include <Eigen/Geometry>

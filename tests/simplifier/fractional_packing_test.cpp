@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/stage2/bound/fractional_packing.h"
+#include "simplifier/stage2/bound/cover_bound.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bound against points of the cell in long double, among them those where it is nearly reached:
 // corners and points of the excluded sphere.
-#include "simplifier/solid/furthest_outside.h"
-
-#include "simplifier/solid/box_cell.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "simplifier/solid/cells.h"
+#include "simplifier/solid/solid_query.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 

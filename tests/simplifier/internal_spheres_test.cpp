@@ -2,7 +2,7 @@
 // The paper's loop (cover() with CoverMethod::kPaper).
 #include "simplifier/stage2/paper/internal_spheres.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

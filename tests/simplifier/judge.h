@@ -5,9 +5,9 @@
 // distance is taken to all spheres in turn, in long double (64 bits of precision). It proves
 // nothing, but it cannot share a mistake with the proofs.
 
-#include "mesh/triangle_mesh.h"
-#include "simplifier/external_spheres.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/types/external_spheres.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/leak_points.h"
-
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "simplifier/leaks.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"

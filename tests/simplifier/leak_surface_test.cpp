@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/leak_surface.h"
-
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "simplifier/leaks.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/levels.h"
+#include "simplifier/types/levels.h"
 
+#include "base/error.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"

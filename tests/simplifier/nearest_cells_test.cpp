@@ -2,7 +2,7 @@
 // The answers have to be those of a loop over all spheres, to the last bit.
 #include "simplifier/solid/nearest_cells.h"
 
-#include "simplifier/solid/box_cell.h"
+#include "simplifier/solid/cells.h"
 #include "simplifier/solid/sphere_hierarchy.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -5,8 +5,8 @@
 // definition of S: an octree of cubes with exact corners, every sphere tried on every cube that it
 // intersects, in long double with an explicit error. Slow and short.
 
-#include "simplifier/external_spheres.h"
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
+#include "simplifier/types/external_spheres.h"
 
 #include <Eigen/Core>
 

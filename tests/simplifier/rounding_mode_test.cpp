@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/rounding_mode.h"
 
-#include "simplifier/certificate.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
 #include "simplifier/repair.h"
+#include "simplifier/types/certificate.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/simplify.h"
 
+#include "base/error.h"
 #include "simplifier/internal/stages.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/crc64.h"
-#include "spheretree/sphere.h"
+#include "base/crc64.h"
+#include "geometry/sphere.h"
 
 #include <bit>
 #include <cstdint>

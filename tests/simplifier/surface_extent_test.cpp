@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/stage2/surface_extent.h"
-
-#include "simplifier/external_spheres.h"
+#include "simplifier/stage2/cover_problem.h"
+#include "simplifier/types/external_spheres.h"
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>

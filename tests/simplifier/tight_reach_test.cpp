@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is wider than D by the closing slack is open: chambers behind ways whose width is known, and
 // places among random blocks to which a finer flood of exact distances gets.
-#include "simplifier/external_spheres.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "simplifier/types/external_spheres.h"
 #include "tests/simplifier/fine_flood.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

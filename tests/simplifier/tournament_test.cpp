@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/stage2/search/tournament.h"
-
+#include "simplifier/stage2/search/cover_search.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

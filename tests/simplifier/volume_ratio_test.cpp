@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/proof/volume_ratio.h"
-
+#include "simplifier/proof/protrusion.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Covers with zones of their own E: the spheres keep both errors, the certificate knows it, and the
 // tool that made D does not notice the simplification.
-#include "mesh/mesh_distance.h"
+#include "base/error.h"
+#include "geometry/mesh_distance.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/random.h"

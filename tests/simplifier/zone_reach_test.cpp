@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Zones of their own D: what gets in where, and that nothing ever intersects the mesh.
+#include "base/error.h"
 #include "simplifier/concave_edges.h"
-#include "simplifier/external_spheres.h"
-#include "spheretree/error.h"
+#include "simplifier/types/external_spheres.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

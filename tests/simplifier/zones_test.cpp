@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The shapes of zones against long double, and the file they come in.
-#include "simplifier/zones.h"
+#include "simplifier/types/zones.h"
 
-#include "simplifier/stage2/local_error.h"
+#include "base/error.h"
+#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/zone_file.h"
-#include "spheretree/error.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/checker_scene.h"
 
+#include "base/rounding.h"
 #include "collide/collide.h"
-#include "collide/solid_mesh.h"
+#include "collide/meshes/solid_mesh.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/refit.h"
-#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/pose.h"
-#include "spheretree/sphere.h"
+#include "geometry/pose.h"
+#include "geometry/sphere.h"
 
 #include <cstdint>
 #include <span>

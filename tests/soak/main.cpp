@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The soak, or a part of it. See tests/soak/README.md.
+#include "base/error.h"
 #include "bench/program.h"
-#include "spheretree/error.h"
 #include "tests/soak/soak_plan.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/motion.h"
+#include "collide/motion/motion.h"
 #include "tests/soak/random_scene.h"
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace spherule {
 
-// Where the centres of a body's spheres are while it moves as collide/motion.h defines it, with a
-// bound of the error:
+// Where the centres of a body's spheres are while it moves as collide/motion/motion.h defines it,
+// with a bound of the error:
 //     x(t) = base + t way + cos(t angle) arm + sin(t angle) side,
 // where `arm` is the part of R0 (p - c) across the axis n and side = n x arm. Shares no code with
 // collide/.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/distance.h"
+#include "collide/collide.h"
 #include "collide/pair_cache.h"
-#include "collide/within.h"
 #include "tests/soak/cases.h"
 #include "tests/soak/exact_oracle.h"
 #include "tests/soak/random_scene.h"

@@ -3,7 +3,7 @@
 
 // Seeded sphere trees and poses that are hard for a collision test. Metres.
 
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Geometry>

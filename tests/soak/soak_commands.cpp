@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/soak_commands.h"
 
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
 #include "tests/soak/soak_inputs.h"
 #include "tests/support/child_process.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/soak_inputs.h"
 
+#include "base/files.h"
 #include "bench/scenes/shapes.h"
-#include "mesh/io/mesh_io.h"
-#include "spheretree/atomic_file.h"
+#include "io/mesh_io.h"
+#include "io/sphere_file.h"
 #include "spheretree/build.h"
-#include "spheretree/sphere_file.h"
 #include "spheretree/tree_file.h"
 
 #include <vector>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/soak_state.h"
 
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The soak in small: its parts run, are clean, and an interrupted soak comes to the same table.
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
 #include "tests/soak/process_cases.h"
 #include "tests/soak/soak_plan.h"
 #include "tests/support/effort.h"

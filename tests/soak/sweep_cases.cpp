@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "collide/collide.h"
 #include "collide/sweep.h"
-#include "collide/within.h"
 #include "spheretree/build.h"
 #include "tests/soak/cases.h"
 #include "tests/soak/exact_oracle.h"

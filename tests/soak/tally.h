@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collide/collide.h"
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
 #include <cstdint>
 #include <deque>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/thread_cases.h"
 
+#include "base/error.h"
+#include "base/files.h"
 #include "bench/scenes/shapes.h"
-#include "collide/distance.h"
+#include "collide/collide.h"
 #include "collide/pair_cache.h"
 #include "robot/check/robot_scene.h"
 #include "simplifier/simplify.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 #include "tests/soak/random_scene.h"
 #include "tests/soak/soak_robot.h"
 

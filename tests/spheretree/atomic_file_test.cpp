@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/atomic_file.h"
-
+#include "base/files.h"
 #include "tests/spheretree/temporary_folder.h"
 
 #include <atomic>

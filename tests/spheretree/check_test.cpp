@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/check.h"
 
+#include "base/error.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"

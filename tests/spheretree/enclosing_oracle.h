@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
 
 #include <span>
 

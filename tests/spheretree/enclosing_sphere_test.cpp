@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/enclosing_sphere.h"
+#include "geometry/enclosing_sphere.h"
 
 #include "tests/spheretree/enclosing_oracle.h"
 #include "tests/spheretree/exact.h"

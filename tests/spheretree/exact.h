@@ -4,7 +4,7 @@
 // Exact oracles of the tests in this folder. They share no code with the library: a double is a
 // rational number, and rational numbers are compared without rounding.
 
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/level_tree.h"
 
-#include "spheretree/enclosing_sphere.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/enclosing_sphere.h"
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"

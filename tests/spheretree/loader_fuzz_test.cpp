@@ -3,9 +3,9 @@
 // Seeded mutations of valid files: a loader either throws Error or returns something valid. Run
 // under the sanitizers, this also shows that no byte sequence leads to undefined behaviour.
 
+#include "base/crc64.h"
+#include "base/error.h"
 #include "spheretree/build.h"
-#include "spheretree/crc64.h"
-#include "spheretree/error.h"
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/tree_oracle.h"

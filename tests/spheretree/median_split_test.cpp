@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/median_split.h"
+#include "geometry/median_split.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

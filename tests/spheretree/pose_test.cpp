@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/pose.h"
+#include "geometry/pose.h"
 
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
 #include "tests/spheretree/spheres.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/program_output.h"
-
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
 #include "tests/collide/counting_new.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/refit.h"
-
+#include "base/error.h"
 #include "collide/collide.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
-#include "spheretree/error.h"
 #include "spheretree/level_tree.h"
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"

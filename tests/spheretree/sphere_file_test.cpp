@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/sphere_file.h"
+#include "io/sphere_file.h"
 
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
 
 #include "tests/spheretree/exact.h"
 #include "tests/spheretree/spheres.h"

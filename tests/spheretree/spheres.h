@@ -4,7 +4,7 @@
 // Seeded families of spheres, usual and degenerate, for the tests in this folder. The numbers come
 // from the generator's output directly, so they are the same with every standard library.
 
-#include "spheretree/sphere.h"
+#include "geometry/sphere.h"
 
 #include <cstddef>
 #include <cstdint>

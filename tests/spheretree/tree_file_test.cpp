@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/tree_file.h"
 
+#include "base/crc64.h"
 #include "spheretree/build.h"
-#include "spheretree/crc64.h"
 #include "spheretree/internal/file_content.h"
 #include "tests/spheretree/spheres.h"
 #include "tests/spheretree/temporary_folder.h"

@@ -13,7 +13,7 @@ namespace spherule {
 // nor any header that it includes, directly or not, seems to declare, and that headers among them
 // declare which its room may include. Goes by names alone (source_names.h); a name that any of the
 // headers declares as anything is not looked into. A line each,
-// "a.cpp: Sphere needs spheretree/sphere.h".
+// "a.cpp: Sphere needs geometry/sphere.h".
 std::vector<std::string> missing_own_headers(const Sources& sources);
 
 }  // namespace spherule

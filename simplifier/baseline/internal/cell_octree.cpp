@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/cell_octree.h"
 
-#include "mesh/geometry/mesh_box.h"
-#include "mesh/shells/disjoint_sets.h"
+#include "base/disjoint_sets.h"
+#include "base/error.h"
+#include "base/rounding.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/internal/triangle_cube.h"
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
 
 #include <Eigen/Geometry>
 

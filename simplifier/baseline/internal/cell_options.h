@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/error.h"
-#include "spheretree/rounding.h"
+#include "base/error.h"
+#include "base/rounding.h"
 
 namespace spherule::internal {
 

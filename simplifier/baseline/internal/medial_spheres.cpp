@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/medial_spheres.h"
 
+#include "base/threads.h"
 #include "simplifier/baseline/internal/voronoi.h"
 #include "simplifier/solid/sphere_hierarchy.h"
-#include "simplifier/support/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "geometry/sphere.h"
 #include "simplifier/baseline/internal/solid_probe.h"
-#include "spheretree/sphere.h"
 
 #include <Eigen/Core>
 

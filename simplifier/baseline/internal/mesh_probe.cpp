@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/mesh_probe.h"
 
-#include "mesh/geometry/solid_angle.h"
-#include "spheretree/median_split.h"
+#include "geometry/median_split.h"
+#include "geometry/triangles.h"
 
 #include <algorithm>
 #include <cmath>

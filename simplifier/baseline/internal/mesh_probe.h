@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "mesh/triangle_mesh.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/baseline/internal/solid_probe.h"
 
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/reduction_graph.h"
 
-#include "simplifier/support/parallel.h"
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
+#include "base/threads.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
+#include "geometry/mesh_distance.h"
 #include "simplifier/baseline/internal/solid_probe.h"
 #include "simplifier/solid/clearance.h"
 

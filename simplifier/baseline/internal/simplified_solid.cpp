@@ -2,9 +2,9 @@
 #include "simplifier/baseline/internal/simplified_solid.h"
 
 #include "simplifier/baseline/internal/surface_samples.h"
-#include "simplifier/solid/cube.h"
-#include "simplifier/stage2/cover_checks.h"
-#include "simplifier/stage2/paper/inscribed_spheres.h"
+#include "simplifier/solid/cells.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
 
 #include <algorithm>
 #include <set>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "mesh/triangle_mesh.h"
-#include "simplifier/cover.h"
-#include "simplifier/external_spheres.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/stage2/local_error.h"
+#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/stage2/solid_cells.h"
+#include "simplifier/types/cover.h"
+#include "simplifier/types/external_spheres.h"
 
 #include <Eigen/Core>
 

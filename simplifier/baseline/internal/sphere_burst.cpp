@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/rounding.h"
+#include "base/threads.h"
 #include "simplifier/baseline/internal/reduction_graph.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
-#include "simplifier/support/parallel.h"
-#include "spheretree/rounding.h"
 
 #include <algorithm>
 #include <map>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/geometry/point_grid.h"
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "geometry/weld.h"
 #include "simplifier/baseline/internal/sphere_reduction.h"
-#include "simplifier/stage2/search/set_cover.h"
-#include "simplifier/support/parallel.h"
-#include "spheretree/rounding.h"
+#include "simplifier/stage2/search/cover_search.h"
 
 #include <algorithm>
 #include <cmath>

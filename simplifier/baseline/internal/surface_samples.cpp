@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/internal/surface_samples.h"
 
-#include "mesh/geometry/surface_sampling.h"
-#include "simplifier/support/random.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/random.h"
+#include "geometry/surface_sampling.h"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "spheretree/rounding.h"
+#include "base/rounding.h"
 
 #include <Eigen/Geometry>
 

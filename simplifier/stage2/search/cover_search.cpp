@@ -1,14 +1,171 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/search/cover_search.h"
 
-#include "simplifier/support/random.h"
+#include "base/random.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
 #include <numeric>
+#include <queue>
 #include <utility>
 
 namespace spherule::internal {
+namespace {
+
+// Drops the columns whose rows are all covered by others that are kept.
+std::vector<std::size_t> without_redundant(const SetCoverInstance& instance,
+                                           std::vector<std::size_t> chosen) {
+  std::vector<std::uint32_t> times = times_covered(instance, chosen);
+  std::vector<std::size_t> kept;
+  for (auto it = chosen.rbegin(); it != chosen.rend(); ++it) {
+    const std::vector<std::uint32_t>& column = instance.columns[*it];
+    if (std::ranges::all_of(column, [&](std::uint32_t row) { return times[row] > 1; })) {
+      for (const std::uint32_t row : column) --times[row];
+    } else {
+      kept.push_back(*it);
+    }
+  }
+  std::reverse(kept.begin(), kept.end());
+  return kept;
+}
+
+}  // namespace
+
+std::vector<std::size_t> greedy_set_cover(const SetCoverInstance& instance) {
+  struct Offer {
+    std::size_t gain;  // an upper bound: gains only shrink
+    std::size_t column;
+    bool operator<(const Offer& other) const {
+      return gain < other.gain || (gain == other.gain && column > other.column);
+    }
+  };
+  std::priority_queue<Offer> offers;
+  for (std::size_t c = 0; c < instance.columns.size(); ++c) {
+    offers.push({instance.columns[c].size(), c});
+  }
+  std::vector<bool> covered(instance.row_count, false);
+  std::vector<std::size_t> chosen;
+  while (!offers.empty()) {
+    Offer best = offers.top();
+    offers.pop();
+    const std::vector<std::uint32_t>& column = instance.columns[best.column];
+    const auto gain = static_cast<std::size_t>(
+        std::ranges::count_if(column, [&](std::uint32_t row) { return !covered[row]; }));
+    if (gain == 0) continue;
+    if (gain < best.gain) {
+      best.gain = gain;
+      offers.push(best);
+      continue;
+    }
+    chosen.push_back(best.column);
+    for (const std::uint32_t row : column) covered[row] = true;
+  }
+  return without_redundant(instance, std::move(chosen));
+}
+
+std::vector<std::uint32_t> times_covered(const SetCoverInstance& instance,
+                                         const std::vector<std::size_t>& columns) {
+  std::vector<std::uint32_t> times(instance.row_count, 0);
+  for (const std::size_t c : columns) {
+    for (const std::uint32_t row : instance.columns[c]) ++times[row];
+  }
+  return times;
+}
+
+std::vector<std::uint32_t> open_rows(const SetCoverInstance& instance,
+                                     const std::vector<std::size_t>& columns) {
+  std::vector<char> covered(instance.row_count, 0);
+  for (const std::size_t c : columns) {
+    for (const std::uint32_t row : instance.columns[c]) covered[row] = 1;
+  }
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t row = 0; row < instance.row_count; ++row) {
+    if (covered[row] == 0) open.push_back(row);
+  }
+  return open;
+}
+
+namespace {
+
+// Columns of each row that enter the core: all where they are few, as in plates, where none is to
+// spare; else the heaviest.
+constexpr std::size_t kFew = 64;
+constexpr std::size_t kBest = 16;
+
+}  // namespace
+
+CoverCore::CoverCore(const SetCoverInstance& instance,
+                     const std::vector<std::vector<std::uint32_t>>& columns_of,
+                     const CoverSearch::Rows& known, std::span<const std::size_t> start)
+    : instance_(instance),
+      columns_of_(columns_of),
+      weight_(instance.columns.size(), 0),
+      column_number_(instance.columns.size(), kNone),
+      row_number_(instance.row_count, kNone) {
+  for (std::size_t i = 0; i < known.rows.size(); ++i) {
+    for (const std::uint32_t c : columns_of[known.rows[i]]) weight_[c] += known.weights[i];
+  }
+  for (const std::uint32_t row : known.rows) add_list(row);
+  for (const std::size_t c : start) add_column(static_cast<std::uint32_t>(c));
+  for (const std::uint32_t row : known.rows) add_best_columns(row);
+}
+
+void CoverCore::add_row(std::uint32_t row) {
+  std::vector<std::uint32_t>& list = add_list(row);
+  for (const std::uint32_t c : columns_of_[row]) {
+    if (column_number_[c] != kNone) list.push_back(column_number_[c]);
+  }
+  entries_ += list.size();
+  add_best_columns(row);
+}
+
+std::vector<std::uint32_t>& CoverCore::add_list(std::uint32_t row) {
+  row_number_[row] = static_cast<std::uint32_t>(lists_.size());
+  std::vector<std::uint32_t>& list = lists_.emplace_back();
+  list.reserve(std::min(columns_of_[row].size(), kFew));
+  return list;
+}
+
+void CoverCore::add_best_columns(std::uint32_t row) {
+  if (columns_of_[row].size() <= kFew) {
+    for (const std::uint32_t c : columns_of_[row]) add_column(c);
+    return;
+  }
+  std::array<std::uint32_t, kBest> best;
+  std::size_t count = 0;
+  for (const std::uint32_t c : columns_of_[row]) {
+    if (count == kBest && weight_[c] <= weight_[best[count - 1]]) continue;
+    std::size_t at = count < kBest ? count++ : count - 1;
+    for (; at > 0 && weight_[best[at - 1]] < weight_[c]; --at) best[at] = best[at - 1];
+    best[at] = c;
+  }
+  for (std::size_t i = 0; i < count; ++i) add_column(best[i]);
+}
+
+void CoverCore::add_column(std::uint32_t column) {
+  if (column_number_[column] != kNone) return;
+  column_number_[column] = static_cast<std::uint32_t>(columns_.size());
+  columns_.push_back(column);
+  for (const std::uint32_t row : instance_.columns[column]) {
+    if (row_number_[row] == kNone) continue;
+    lists_[row_number_[row]].push_back(column_number_[column]);
+    ++entries_;
+  }
+}
+
+std::vector<std::size_t> CoverCore::in_core(std::span<const std::size_t> columns) const {
+  std::vector<std::size_t> numbers;
+  for (const std::size_t c : columns) numbers.push_back(column_number_[c]);
+  return numbers;
+}
+
+std::vector<std::size_t> CoverCore::in_instance(std::span<const std::uint32_t> columns) const {
+  std::vector<std::size_t> numbers;
+  for (const std::uint32_t c : columns) numbers.push_back(columns_[c]);
+  return numbers;
+}
 
 void CoverSearch::IndexSet::insert(std::uint32_t i) {
   position_[i] = static_cast<std::uint32_t>(items_.size());
@@ -185,6 +342,42 @@ bool CoverSearch::reach(std::size_t target, std::uint64_t work, std::uint64_t se
     entered_last_ = best_for(open_.items()[random.index(open_.items().size())]);
     add(entered_last_);
     weigh_open_rows();
+  }
+}
+
+namespace {
+
+// Of the rows known, how many more are learned at once, and at least.
+constexpr std::size_t kShare = 20;
+constexpr std::size_t kLeast = 100;
+// Between the seeds of a search's passes; those of different searches follow one another.
+constexpr std::uint64_t kSeedStep = 0x9e3779b97f4a7c15;
+
+}  // namespace
+
+bool LazyCoverSearch::reach(std::size_t target, std::uint64_t visits, std::uint64_t seed,
+                            const std::atomic<bool>& unneeded) {
+  CoverCore core(instance_, columns_of_, known_, columns_);
+  const std::uint64_t work = visits * core.entries();
+  for (std::uint64_t done = 0;; seed += kSeedStep) {
+    CoverSearch::Rows rows{{}, known_.weights};
+    rows.rows.resize(known_.rows.size());
+    std::iota(rows.rows.begin(), rows.rows.end(), std::uint32_t{0});
+    CoverSearch search(core.column_count(), core.columns_of(), rows, core.in_core(columns_));
+    const bool covers = search.reach(target, work - done, seed, unneeded);
+    columns_ = core.in_instance(search.best_columns());
+    known_.weights = search.weights();
+    done += search.work();
+    if (!covers) return false;
+    const std::vector<std::uint32_t> open = open_rows(instance_, columns_);
+    if (open.empty()) return true;
+    if (done >= work || unneeded) return false;
+    const std::size_t count = std::min(open.size(), known_.rows.size() / kShare + kLeast);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t row = open[i * open.size() / count];
+      known_.add(row);
+      core.add_row(row);
+    }
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/broadphase_callback.h"
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/collide.h"
+#include "base/error.h"
 #include "bench/checkers/fcl_solid.h"
 #include "bench/scenes/shapes.h"
 #include "collide/collide.h"
-#include "collide/motion.h"
-#include "spheretree/error.h"
+#include "collide/motion/motion.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

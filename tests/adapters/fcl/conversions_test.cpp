@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/conversions.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/support/random.h"
 

@@ -3,7 +3,7 @@
 
 #include "adapters/fcl/sphere_model.h"
 #include "bench/checkers/fcl_solid.h"
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "tests/support/random.h"
 
 #include <fcl/common/types.h>

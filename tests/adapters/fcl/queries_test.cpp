@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/collide.h"
+#include "base/error.h"
 #include "collide/collide.h"
-#include "collide/distance.h"
-#include "mesh/point_triangle.h"
+#include "geometry/point_triangle.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/support/random.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 
 #include <fcl/common/types.h>
 

@@ -2,8 +2,8 @@
 // The validity of states and motions for OMPL, against trigonometry, and a planner that uses them.
 #include "adapters/ompl/motion_validator.h"
 #include "adapters/ompl/state_validity_checker.h"
+#include "base/error.h"
 #include "robot/check/robot_scene.h"
-#include "spheretree/error.h"
 #include "tests/adapters/ompl/planar_arm.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

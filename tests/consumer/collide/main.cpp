@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <spherule/collide/collide.h>
-#include <spherule/collide/distance.h>
 #include <spherule/spheretree/build.h>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <iostream>
 #include <random>
 #include <spherule/collide/collide.h>
+#include <spherule/geometry/sphere.h>
 #include <spherule/spheretree/build.h>
-#include <spherule/spheretree/sphere.h>
 #include <vector>
 
 // What is compared with, in exact.cpp: compiled without -ffast-math, in long double, so that bounds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/edge.h"
+#include "collide/sweep.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells of joint positions in which two bodies are apart, against the gaps of all their spheres.
 
-#include "collide/kernels/free_cells.h"
-
+#include "collide/kernels/plan_trees.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
 

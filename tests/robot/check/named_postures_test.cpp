@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Postures of a robot by name, what touches in them, and lists of ignored pairs.
 
-#include "robot/check/named_postures.h"
-
-#include "robot/pairs/ignored_pairs.h"
+#include "robot/check/scene_setup.h"
+#include "robot/pairs/allowed_collisions.h"
 #include "spheretree/build.h"
 #include "tests/robot/box_robots.h"
 

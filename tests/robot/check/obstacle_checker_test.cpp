@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/distance.h"
-#include "collide/within.h"
+#include "base/error.h"
+#include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"

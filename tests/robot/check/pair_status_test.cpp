@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/check/pair_status.h"
-
+#include "base/error.h"
+#include "robot/check/robot_collision.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/robot/box_robots.h"
 
 #include <gtest/gtest.h>

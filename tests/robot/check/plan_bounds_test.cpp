@@ -4,8 +4,8 @@
 
 #include "collide/kernels/compiled_plan.h"
 #include "collide/kernels/plan_kernels.h"
-#include "robot/check/internal/body_pairs.h"
-#include "robot/check/internal/plan_source.h"
+#include "robot/check/body_pairs.h"
+#include "robot/check/plan_source.h"
 #include "robot/model/joint_positions.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/model/path_bounds.h"

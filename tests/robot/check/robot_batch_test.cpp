@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many configurations a call: the same answers as one by one, whatever the order.
 
+#include "base/error.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"

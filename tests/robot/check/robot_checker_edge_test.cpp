@@ -2,10 +2,10 @@
 // Straight motions of a robot among obstacles and against itself, against many configurations on
 // them and against positions of contact known by hand.
 
-#include "collide/solid_mesh.h"
+#include "base/error.h"
+#include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_checker.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/check/scene_oracle.h"

@@ -3,9 +3,9 @@
 
 #include "robot/check/robot_checker.h"
 
+#include "base/error.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"

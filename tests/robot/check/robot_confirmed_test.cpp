@@ -2,11 +2,11 @@
 // Contacts confirmed on meshes, of self pairs and with obstacles of every kind, padded and not, in
 // configurations and on motions, against distances of convex solids.
 
-#include "collide/mesh_contact.h"
-#include "collide/solid_mesh.h"
+#include "base/error.h"
+#include "collide/meshes/mesh_contact.h"
+#include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/solid_oracle.h"

@@ -2,10 +2,10 @@
 // Contacts confirmed on meshes that are not convex against FCL's distances of these meshes and a
 // point-in-solid test: nothing missed, and nothing extra but within rounding.
 
-#include "collide/solid_mesh.h"
+#include "base/rounding.h"
+#include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/rounding.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/voxel_solids.h"

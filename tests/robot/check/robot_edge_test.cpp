@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Straight motions in joint space, against many configurations on them.
 
-#include "collide/solid_mesh.h"
+#include "base/error.h"
+#include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
-#include "spheretree/refit.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/check/edge_oracle.h"

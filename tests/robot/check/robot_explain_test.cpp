@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What touches what: non-empty exactly if the robot collides, and what is said of each contact.
 
+#include "base/error.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_pose.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"

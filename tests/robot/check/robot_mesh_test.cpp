@@ -2,8 +2,8 @@
 // A robot whose contacts are confirmed on triangles: the answers of collides() of covered meshes,
 // or of meshes and spheres.
 
+#include "base/error.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"

@@ -3,10 +3,10 @@
 // says has to be what all canonical tests say, less the contacts of pairs that are proved free; and
 // no boxes touch where it finds the robot free.
 
+#include "base/error.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/check/edge_oracle.h"

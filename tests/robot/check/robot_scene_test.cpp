@@ -3,10 +3,10 @@
 
 #include "robot/check/robot_scene.h"
 
+#include "base/error.h"
+#include "collide/meshes/solid_mesh.h"
 #include "collide/point_cloud.h"
-#include "collide/solid_mesh.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 // Motions on which continuous joints turn the shorter way, against many configurations on the way
 // that std::remainder() finds, and against where contacts are known by hand.
 
+#include "base/error.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/support/effort.h"

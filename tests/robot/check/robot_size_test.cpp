@@ -2,9 +2,9 @@
 // Robots of very many bodies, as no real one has: refused, or answered in time in proportion to the
 // pairs.
 
+#include "base/error.h"
 #include "robot/check/robot_scene.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/support/effort.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lanes of a RobotChecker do not leave out what only the growth of a solid mesh touches.
 
-#include "collide/solid_mesh.h"
+#include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
 #include "tests/collide/trees.h"

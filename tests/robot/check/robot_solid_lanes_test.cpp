@@ -2,8 +2,8 @@
 // Solid meshes among the obstacles of a RobotChecker: configurations and motions in lanes, on every
 // instruction set, against explain(), which makes all canonical tests one by one.
 
-#include "collide/solid_mesh.h"
-#include "collide/solids/solid_spheres.h"
+#include "collide/meshes/solid_mesh.h"
+#include "collide/meshes/spheres_inside.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
 #include "tests/collide/trees.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Configurations shared out among threads: the verdicts and the errors of one thread.
 
-#include "robot/model/internal/shared_work.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "robot/model/shared_work.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/check/scene_setup.h"
 
+#include "base/error.h"
 #include "robot/check/robot_checker.h"
-#include "spheretree/error.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
 

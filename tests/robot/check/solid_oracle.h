@@ -4,9 +4,9 @@
 // How far convex solids are from each other, by alternating projections: nothing of it is shared
 // with what the library does.
 
-#include "collide/primitive.h"
-#include "spheretree/pose.h"
-#include "spheretree/sphere.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
+#include "geometry/sphere.h"
 
 #include <Eigen/Core>
 

@@ -4,8 +4,8 @@
 // Solids made of cubic cells: meshes that are not convex, whose inside and whose distance from a
 // point are exact by the cells alone. FCL tells how far the surfaces of two are apart.
 
-#include "collide/mesh_contact.h"
-#include "spheretree/pose.h"
+#include "collide/meshes/mesh_contact.h"
+#include "geometry/pose.h"
 #include "tests/collide/scene_random.h"
 
 #include <Eigen/Core>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/audit_robot.h"
 
-#include "robot/cover/internal/link_solid.h"
-#include "robot/cover/repair_robot.h"
+#include "base/error.h"
+#include "robot/cover/link_parts.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/error.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
 #include "tests/support/random.h"

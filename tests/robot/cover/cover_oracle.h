@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/primitive.h"
-#include "robot/model/robot_description.h"
-#include "spheretree/pose.h"
+#include "collide/solids/primitive.h"
+#include "geometry/pose.h"
+#include "robot/model/robot_model.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Core>

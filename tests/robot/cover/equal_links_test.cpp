@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Links of the same shapes are covered and audited once, with the answers of each alone.
-#include "robot/cover/internal/equal_links.h"
-
 #include "robot/cover/audit_robot.h"
-#include "robot/cover/repair_robot.h"
+#include "robot/cover/link_parts.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/urdf.h"
 #include "tests/support/temp_dir.h"

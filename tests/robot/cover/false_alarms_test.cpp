@@ -3,10 +3,10 @@
 
 #include "robot/cover/false_alarms.h"
 
-#include "robot/cover/internal/binomial_bound.h"
+#include "base/error.h"
+#include "robot/cover/alarm_sample.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/robot/box_robots.h"
 #include "tests/support/effort.h"
 

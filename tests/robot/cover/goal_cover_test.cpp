@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/goal_cover.h"
 
+#include "base/error.h"
 #include "robot/model/link_spheres.h"
-#include "spheretree/error.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/link_errors.h"
 
+#include "base/error.h"
 #include "robot/cover/false_alarms.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/robot/box_robots.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/link_mesh.h"
 
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/mesh/mesh_files.h"
 #include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"

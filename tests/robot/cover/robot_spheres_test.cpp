@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/robot_spheres.h"
 
-#include "mesh/io/mesh_io.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "io/mesh_io.h"
 #include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/cover/internal/shapes_in_spheres.h"
-
+#include "robot/cover/primitive_mesh.h"
 #include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

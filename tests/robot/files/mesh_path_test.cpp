@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Names of mesh files in a URDF, and the files they mean.
 
+#include "base/error.h"
 #include "robot/files/urdf.h"
-#include "spheretree/error.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files of which some bytes are wrong: they are read, or refused with an Error, and nothing else.
 
+#include "base/error.h"
 #include "robot/files/srdf.h"
 #include "robot/files/urdf.h"
-#include "spheretree/error.h"
 #include "tests/robot/files/random_urdf.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/scene_file.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "robot/files/srdf.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>

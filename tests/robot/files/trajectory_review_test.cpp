@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/trajectory_review.h"
-
+#include "robot/files/trajectory_file.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is read from URDF files, against urdfdom.
 
+#include "base/files.h"
 #include "robot/files/urdf.h"
-#include "spheretree/atomic_file.h"
 #include "tests/robot/files/random_urdf.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"

@@ -3,7 +3,7 @@
 
 #include "robot/files/urdf.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
 

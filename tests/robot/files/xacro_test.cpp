@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Robots whose URDF the program xacro makes: a stand-in for it on the PATH.
+#include "base/error.h"
 #include "robot/files/urdf.h"
-#include "spheretree/error.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>

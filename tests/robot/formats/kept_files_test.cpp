@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files of the user that get other spheres and the pairs that they do not ignore yet: everything
 // else stays as it is, byte by byte. The texts are styled as the published files are.
+#include "base/error.h"
+#include "base/files.h"
 #include "robot/files/srdf.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/files.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
 #include "tests/robot/formats/sphere_sets.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"

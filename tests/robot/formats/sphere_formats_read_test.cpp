@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is read of files as other programs write them: every number, name and buffer in its place.
 
+#include "base/error.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/error.h"
 #include "tests/robot/formats/sphere_sets.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

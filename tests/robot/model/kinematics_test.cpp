@@ -3,9 +3,9 @@
 
 #include "robot/model/kinematics.h"
 
+#include "base/error.h"
 #include "robot/check/robot_collision.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/exact_scene.h"
 #include "tests/robot/robots.h"
 

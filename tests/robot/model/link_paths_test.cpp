@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/model/internal/link_paths.h"
+#include "robot/model/link_paths.h"
 
+#include "base/error.h"
 #include "robot/pairs/allowed_collisions.h"
-#include "spheretree/error.h"
 #include "tests/robot/robots.h"
 
 #include <gtest/gtest.h>

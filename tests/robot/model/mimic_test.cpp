@@ -2,9 +2,9 @@
 // Joints that follow others: the model, and every check of a robot, by the exact queries under the
 // poses of forward_kinematics().
 
+#include "base/error.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/collide/counting_new.h"
 #include "tests/collide/tetrahedra.h"
 #include "tests/collide/trees.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "robot/model/internal/path_reach.h"
+#include "robot/model/link_paths.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -17,7 +17,7 @@ struct PathBounds {
   double bend = 0.0;   // half of what that velocity changes by: half an acceleration
 };
 
-// The formula of collide/kernels/plan_bounds.h for one path, without slack for rounding: for a
+// The formula of collide/kernels/plan_vectors.h for one path, without slack for rounding: for a
 // motion on which no joint's position changes by more than `rates` in all, and no prismatic joint's
 // magnitude exceeds `shifts`. Both are indexed by the robot's joints. Where the second body does
 // not move it is the root.

@@ -3,10 +3,8 @@
 // forward_kinematics() all along the motion. That the kernels compute the same:
 // plan_bounds_test.cpp.
 
-#include "robot/model/internal/path_reach.h"
-
-#include "robot/model/internal/link_paths.h"
 #include "robot/model/kinematics.h"
+#include "robot/model/link_paths.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/model/path_bounds.h"
 #include "tests/robot/robots.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/model/robot_model.h"
 
+#include "base/error.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 
 #include <gtest/gtest.h>
 

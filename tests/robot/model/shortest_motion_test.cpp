@@ -3,8 +3,8 @@
 
 #include "robot/model/shortest_motion.h"
 
-#include "robot/model/internal/moving_frames.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "robot/model/link_paths.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
 

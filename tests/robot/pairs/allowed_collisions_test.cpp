@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/allowed_collisions.h"
 
+#include "base/error.h"
 #include "collide/collide.h"
-#include "robot/check/sample_collisions.h"
+#include "robot/check/robot_collision.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/error.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"

@@ -3,7 +3,7 @@
 
 #include "robot/pairs/free_boxes.h"
 
-#include "robot/check/internal/box_cells.h"
+#include "robot/check/plan_source.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
 

@@ -2,8 +2,7 @@
 // Corners of hulls, against support functions: the hull of all points lies within a radius of that
 // of the corners exactly if no direction has a point that is further than that before all corners.
 
-#include "robot/pairs/internal/hull_corners.h"
-
+#include "robot/pairs/link_pieces.h"
 #include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/pairs/link_pairs_file.h"
-
-#include "spheretree/crc64.h"
-#include "spheretree/error.h"
+#include "base/crc64.h"
+#include "base/error.h"
+#include "robot/pairs/link_pairs.h"
 #include "tests/robot/box_robots.h"
 #include "tests/support/temp_dir.h"
 

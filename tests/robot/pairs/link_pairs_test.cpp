@@ -3,11 +3,11 @@
 
 #include "robot/pairs/link_pairs.h"
 
+#include "base/error.h"
 #include "robot/model/kinematics.h"
-#include "robot/pairs/internal/link_pieces.h"
-#include "robot/pairs/internal/pair_space.h"
+#include "robot/pairs/link_pieces.h"
+#include "robot/pairs/pair_search.h"
 #include "spheretree/build.h"
-#include "spheretree/error.h"
 #include "tests/robot/box_robots.h"
 #include "tests/support/effort.h"
 #include "tests/support/rounding_mode.h"

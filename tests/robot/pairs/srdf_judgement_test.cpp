@@ -3,9 +3,9 @@
 
 #include "robot/pairs/srdf_judgement.h"
 
+#include "base/error.h"
 #include "robot/check/robot_scene.h"
-#include "robot/pairs/ignored_pairs.h"
-#include "spheretree/error.h"
+#include "robot/pairs/allowed_collisions.h"
 #include "tests/robot/box_robots.h"
 
 #include <gtest/gtest.h>

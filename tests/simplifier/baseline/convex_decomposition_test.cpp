@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/convex_decomposition.h"
 
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
 #include "tests/simplifier/baseline/hull_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"

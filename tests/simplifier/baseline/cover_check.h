@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "mesh/mesh_distance.h"
-#include "mesh/mesh_report.h"
-#include "simplifier/certificate.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/mesh_report.h"
+#include "simplifier/types/certificate.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

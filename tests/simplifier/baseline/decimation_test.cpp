@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/decimation.h"
 
-#include "mesh/mesh_report.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_report.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

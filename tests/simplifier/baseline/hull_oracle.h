@@ -3,7 +3,7 @@
 
 // Exact oracles of hulls; they share no code with the library.
 
-#include "mesh/triangle_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "tests/spheretree/exact.h"
 
 #include <array>

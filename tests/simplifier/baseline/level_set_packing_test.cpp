@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/level_set_packing.h"
 
-#include "mesh/mesh_distance.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "geometry/mesh_distance.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

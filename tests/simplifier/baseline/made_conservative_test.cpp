@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/made_conservative.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/medial_axis.h"
 
+#include "base/error.h"
 #include "simplifier/baseline/internal/medial_spheres.h"
 #include "simplifier/baseline/internal/mesh_probe.h"
 #include "simplifier/baseline/internal/surface_samples.h"
 #include "simplifier/baseline/made_conservative.h"
 #include "spheretree/check.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

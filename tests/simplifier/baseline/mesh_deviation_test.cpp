@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/mesh_deviation.h"
 
-#include "spheretree/error.h"
+#include "base/error.h"
 #include "tests/mesh/distance_oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"

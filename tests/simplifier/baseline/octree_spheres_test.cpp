@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/octree_spheres.h"
 
-#include "mesh/mesh_distance.h"
-#include "simplifier/certificate.h"
+#include "base/error.h"
+#include "geometry/mesh_distance.h"
+#include "simplifier/types/certificate.h"
 #include "spheretree/check.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/sphere_packing.h"
 
-#include "simplifier/certificate.h"
+#include "base/error.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
+#include "simplifier/types/certificate.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stage 2 methods that baselines offer: medial_cover() and packing_cover().
+#include "base/error.h"
 #include "simplifier/baseline/internal/simplified_probe.h"
 #include "simplifier/baseline/medial_cover.h"
 #include "simplifier/baseline/packing_cover.h"
 #include "simplifier/simplify.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/baseline/voxelisation.h"
 
-#include "simplifier/certificate.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "simplifier/types/certificate.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/baseline/exact_cube.h"
 #include "tests/simplifier/judge.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bodies of an assembly: their names and places, and that fitting them together is fitting each
 // alone. Where the bodies are, OpenCASCADE says.
+#include "base/error.h"
+#include "io/cad/cad_file.h"
 #include "simplifier/bodies.h"
-#include "simplifier/cad/cad_file.h"
-#include "spheretree/error.h"
 #include "tests/simplifier/cad/cad_assembly.h"
 #include "tests/simplifier/cad/cad_parts.h"
 #include "tests/support/effort.h"

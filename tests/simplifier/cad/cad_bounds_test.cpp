@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/mesh_distance.h"
-#include "mesh/mesh_report.h"
-#include "simplifier/cad/cad_file.h"
-#include "simplifier/cad/internal/occt_geometry.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/mesh_report.h"
+#include "io/cad/cad_file.h"
+#include "io/cad/cad_shape.h"
 #include "tests/simplifier/cad/cad_parts.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"

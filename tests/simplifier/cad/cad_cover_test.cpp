@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/cad/cad_file.h"
+#include "io/cad/cad_file.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/cad/cad_parts.h"
 #include "tests/support/effort.h"

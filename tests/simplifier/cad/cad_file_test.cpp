@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/cad/cad_file.h"
+#include "io/cad/cad_file.h"
 
-#include "mesh/io/mesh_io.h"
-#include "mesh/mesh_distance.h"
-#include "mesh/mesh_report.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/mesh_report.h"
+#include "io/mesh_io.h"
 #include "tests/simplifier/cad/cad_parts.h"
 #include "tests/support/temp_dir.h"
 

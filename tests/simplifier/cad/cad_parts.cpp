@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/simplifier/cad/cad_parts.h"
 
-#include "simplifier/cad/internal/occt_geometry.h"
+#include "io/cad/cad_shape.h"
 #include "tests/support/random.h"
 
 #include <BRepAdaptor_Curve.hxx>

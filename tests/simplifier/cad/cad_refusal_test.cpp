@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/cad/cad_file.h"
-#include "spheretree/atomic_file.h"
-#include "spheretree/error.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "io/cad/cad_file.h"
 #include "tests/simplifier/cad/cad_parts.h"
 #include "tests/support/temp_dir.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/text/xml_markup.h"
+#include "base/parser_fault.h"
 
 #include <gtest/gtest.h>
 

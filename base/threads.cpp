@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/threads.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace spherule::internal {
+
+void run_in_parts(std::size_t begin, std::size_t end, const void* work,
+                  void (*call)(const void* work, std::size_t first, std::size_t last)) {
+  if (begin >= end) return;
+  using Range = tbb::blocked_range<std::size_t>;
+  // What is thrown in one loop cancels that loop alone, not those inside its other parts.
+  tbb::task_group_context own(tbb::task_group_context::isolated);
+  // A thread that waits for a loop inside another takes no part of the outer one meanwhile, whose
+  // memory would come on top.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(
+        Range(begin, end), [&](const Range& part) { call(work, part.begin(), part.end()); }, own);
+  });
+}
+
+std::size_t thread_count() {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(allowed, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+}
+
+namespace {
+
+// More are of no use on any machine, and tbb allocates memory for as many as it is allowed.
+constexpr std::size_t kMostThreads = 4096;
+
+std::size_t allowed_threads(int requested) {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return requested > 0 ? std::min(static_cast<std::size_t>(requested), kMostThreads) : allowed;
+}
+
+}  // namespace
+
+struct ThreadLimit::Control {
+  explicit Control(std::size_t threads)
+      : control(tbb::global_control::max_allowed_parallelism, threads) {}
+
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads)
+    : control_(std::make_unique<Control>(allowed_threads(threads))) {}
+
+ThreadLimit::~ThreadLimit() = default;
+
+}  // namespace spherule::internal

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Triangle meshes.
+//
+// @code{.cpp}
+// #include <spherule/geometry/triangle_mesh.h>
+// #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// spherule::validate(tetrahedron, "tetrahedron");  // throws Error if it cannot be used
+// assert(tetrahedron.triangles.size() == 4 && tetrahedron.vertex_error == 0.0);
+// const auto [a, b, c] = corners_of(tetrahedron, tetrahedron.triangles[0]);
+// assert(a.x() == 0.0 && b.y() == 1.0 && c.x() == 1.0);
+// @endcode
+
+#include "geometry/sphere.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Triangles as read: a closed set of points M, with no assumption of watertightness, orientation or
+// freedom from duplicates. Indices refer to `vertices`; lengths are in the unit of the model.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3i> triangles;
+
+  // Bound on the distance between a vertex as stored here and as written in the file it was read
+  // from (a reader that rounds to 32-bit floats, node transforms, scale); of a CAD file, on the
+  // distance from its faces to the triangles. Zero for meshes made in memory. The simplifier adds
+  // it to the padding, so that its promises hold for what the file describes.
+  double vertex_error = 0.0;
+};
+
+// The corners of a triangle, whose indices must be in range.
+inline std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh,
+                                                 const Eigen::Vector3i& triangle) {
+  const auto corner = [&](int k) -> const Eigen::Vector3d& {
+    return mesh.vertices[static_cast<std::size_t>(triangle[k])];
+  };
+  return {corner(0), corner(1), corner(2)};
+}
+
+// Throws Error(subject, ...) unless the mesh can be used at all: at least one triangle, indices in
+// range, coordinates finite and at most kMaxCoordinate, vertex_error finite and not negative. What
+// covers, certifies, measures, writes or queries a mesh calls it, but for MeshDistance, which has
+// to be given a mesh that passed.
+void validate(const TriangleMesh& mesh, const std::string& subject);
+
+}  // namespace spherule
+
+namespace spherule::internal {
+
+// Around the vertices that triangles use.
+inline Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (const int v : t) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+  }
+  return box;
+}
+
+// Around the spheres, up to rounding.
+inline Eigen::AlignedBox3d box_of(std::span<const Sphere> spheres) {
+  Eigen::AlignedBox3d box;
+  for (const Sphere& s : spheres) {
+    box.extend(Eigen::Vector3d(s.center - Eigen::Vector3d::Constant(s.radius)));
+    box.extend(Eigen::Vector3d(s.center + Eigen::Vector3d::Constant(s.radius)));
+  }
+  return box;
+}
+
+}  // namespace spherule::internal

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/text_scanner.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherule::internal {
+
+enum class PlyNumber { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+
+struct PlyProperty {
+  std::string name;
+  PlyNumber type = PlyNumber::kFloat;   // of the items of a list
+  std::optional<PlyNumber> count_type;  // of the length of a list; only lists have it
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count = 0;  // of its items
+  std::vector<PlyProperty> properties;
+};
+
+// The header of a PLY file (Turk, "The PLY Polygon File Format", 1994), then its numbers one after
+// the other, in text or binary form. In text each item stands on a line of its own. Every fault is
+// an Error that names the file and the line, or the byte.
+class PlyData {
+ public:
+  // Reads the header. The bytes have to outlive this.
+  PlyData(std::string_view bytes, const std::string& subject);
+
+  const std::vector<PlyElement>& elements() const { return elements_; }
+  bool is_text() const { return encoding_ == Encoding::kText; }
+  const std::string& subject() const { return in_.subject(); }
+
+  // Calls `read` once for each item of the element, which has to read all of its properties.
+  template <class Read>
+  void for_each_item(const PlyElement& element, const Read& read) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      begin_item(element, i);
+      read();
+      end_item();
+    }
+  }
+
+  // The next number of the item; finite if the file is text.
+  double next(PlyNumber type);
+  std::int64_t next_integer(PlyNumber type);
+  // The list that comes next, or its length alone.
+  void next_list(const PlyProperty& property, std::vector<std::int64_t>& list);
+  std::size_t next_list_size(const PlyProperty& property);
+  void skip(const PlyProperty& property);
+
+  // All items of an element: without their values, or as points by their properties x, y and z.
+  void skip(const PlyElement& element);
+  std::vector<Eigen::Vector3d> read_points(const PlyElement& element);
+  void expect_end();
+
+  [[noreturn]] void fail(const std::string& reason) const;
+
+ private:
+  enum class Encoding { kText, kLittleEndian, kBigEndian };
+
+  void read_header();
+  void read_format();
+  void read_element();
+  void read_property();
+  PlyNumber read_type(std::string_view word) const;
+
+  void begin_item(const PlyElement& element, std::size_t number);
+  void end_item();
+  double next_in_text();
+  template <class T>
+  double next_in_binary();
+  std::string item() const;  // the name of the current one
+
+  std::string_view bytes_;
+  TextScanner in_;  // of the header, and of all in text form
+  Encoding encoding_ = Encoding::kText;
+  std::vector<PlyElement> elements_;
+  std::size_t at_ = 0;  // in binary form: the next byte
+  const PlyElement* element_ = nullptr;
+  std::size_t number_ = 0;  // of the current item
+  bool is_line_begun_ = false;
+};
+
+}  // namespace spherule::internal

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "geometry/mesh_report.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "robot/cover/link_mesh.h"
+#include "robot/model/link_spheres.h"
+#include "robot/model/robot_model.h"
+#include "simplifier/simplify.h"
+#include "simplifier/types/certificate.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule::internal {
+
+// How errors name a link.
+inline std::string subject_of(const std::string& link) {
+  return "link '" + link + "'";
+}
+
+// A link's mesh beside the spheres that it was given.
+struct LinkParts {
+  std::string link;
+  std::size_t index = 0;  // of the link in the description
+  // Of the first part with the same shapes and spheres; the own one where none is before.
+  std::size_t first_equal = 0;
+  std::optional<TriangleMesh> mesh;
+  double chord_error = 0.0;  // of the mesh, which holds what it stands for; 0 without curved shapes
+  std::vector<Sphere> spheres;
+};
+
+// Meshes and spheres of all links, checked; the links that the robot has not got go to `unknown`.
+std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
+                                LinkGeometry geometry, std::vector<std::string>* unknown);
+
+// What `work` makes; an Error says of which link it is.
+template <typename Work>
+auto of_link(const std::string& link, Work work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(subject_of(link) + ", " + error.subject(), error.reason());
+  }
+}
+
+// `done` of `all` steps are done, and that of this link begins.
+inline void report(const Progress& progress, std::size_t done, std::size_t all,
+                   const std::string& link) {
+  if (progress) progress(static_cast<double>(done) / static_cast<double>(all), link.c_str());
+}
+
+}  // namespace spherule::internal
+
+// Sentences about a link's size that follow its name; empty where nothing is to be said. `across`
+// is the diagonal of the box of its mesh; lengths are in metres.
+namespace spherule::internal {
+
+// Why a link is not to be covered, or its spheres examined, for so small a max error.
+std::string size_fault(double across, double max_error);
+
+// That a link is so large that its mesh is rather in millimetres.
+std::string size_doubt(double across, double max_error);
+
+// For a person: D was to be chosen for a link, and is more than 4 E.
+std::string link_diameter_warning(double min_external_diameter);
+
+// S of a link's mesh, by the rule of simplify() for lengths that are 0, and how a cover of it is
+// examined. Not copied: the options refer to it.
+class LinkSolid {
+ public:
+  // Throws Error as simplified_solid().
+  LinkSolid(const TriangleMesh& mesh, const SimplifyOptions& lengths,
+            std::size_t max_cells = ExternalOptions::kMostCells);
+  LinkSolid(const LinkSolid&) = delete;
+  LinkSolid& operator=(const LinkSolid&) = delete;
+
+  const ExternalSpheres& external() const { return solid_.external; }
+  const CertifyOptions& certify_options() const { return certify_options_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  SimplifiedSolid solid_;
+  CertifyOptions certify_options_;
+  std::vector<std::string> warnings_;
+};
+
+// How open a link's mesh is, "its mesh is open (8 edges with one triangle, 0 with more than two)":
+// what that means for the caller comes behind a colon. Of a report that says it is not closed.
+std::string openness(const MeshReport& report);
+
+// For each link the index of the first link that has the same shapes, number for number: fingers of
+// a hand, legs of a walking robot. A link's own index where no earlier link has the same shapes, or
+// where it has none.
+std::vector<std::size_t> first_equal_links(const RobotDescription& robot, LinkGeometry geometry);
+
+}  // namespace spherule::internal

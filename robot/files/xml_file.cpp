@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/files/xml_file.h"
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/parser_fault.h"
+#include "base/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <sys/wait.h>
+#include <tinyxml2.h>
+#include <unistd.h>
+#include <utility>
+
+namespace spherule::internal {
+namespace {
+
+// By the lengths of its sequences; forms that are too long and surrogates do no harm here.
+bool is_utf8(std::string_view text) {
+  std::size_t follow = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (follow > 0) {
+      if ((byte & 0xC0U) != 0x80U) return false;
+      --follow;
+    } else if (byte >= 0x80U) {
+      if ((byte & 0xE0U) == 0xC0U) {
+        follow = 1;
+      } else if ((byte & 0xF0U) == 0xE0U) {
+        follow = 2;
+      } else if ((byte & 0xF8U) == 0xF0U) {
+        follow = 3;
+      } else {
+        return false;
+      }
+    }
+  }
+  return follow == 0;
+}
+
+// Why a document is refused whose root is this one; people have robots in other formats, too.
+std::string wrong_root(const std::string& root, std::string_view wanted) {
+  std::string reason = "its root is no <" + std::string(wanted) + ">";
+  if (root == "sdf") return reason + " but <sdf>: an SDF file (Gazebo) has to be made a URDF first";
+  if (root == "mujoco") {
+    return reason + " but <mujoco>: an MJCF file (MuJoCo) has to be made a URDF first";
+  }
+  return reason;
+}
+
+}  // namespace
+
+std::string_view XmlElement::tag() const {
+  return element_->Name();
+}
+
+std::string_view XmlElement::text() const {
+  const char* const text = element_->GetText();
+  return text == nullptr ? std::string_view() : text;
+}
+
+std::string XmlElement::printed() const {
+  tinyxml2::XMLPrinter printer;
+  element_->Accept(&printer);
+  return printer.CStr();
+}
+
+std::vector<XmlElement> XmlElement::children(std::string_view tag) const {
+  std::vector<XmlElement> result;
+  for (const auto* child = element_->FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    if (tag.empty() || tag == child->Name()) result.emplace_back(*child, *file_);
+  }
+  return result;
+}
+
+std::optional<XmlElement> XmlElement::child(std::string_view tag) const {
+  const std::vector<XmlElement> found = children(tag);
+  if (found.empty()) return {};
+  if (found.size() > 1) found[1].refuse("there is one already");
+  return found.front();
+}
+
+XmlElement XmlElement::needed_child(std::string_view tag) const {
+  const auto found = child(tag);
+  if (!found) refuse("it has no <" + std::string(tag) + ">");
+  return *found;
+}
+
+std::optional<std::string> XmlElement::attribute(std::string_view name) const {
+  const char* const value = element_->Attribute(std::string(name).c_str());
+  if (value == nullptr) return {};
+  if (!is_utf8(value)) refuse(std::string(name) + " is no text in UTF-8");
+  return value;
+}
+
+std::string XmlElement::needed(std::string_view name) const {
+  const auto value = attribute(name);
+  if (!value || value->empty()) refuse("it has no " + std::string(name));
+  return *value;
+}
+
+std::optional<std::vector<double>> XmlElement::numbers(std::string_view name) const {
+  const auto text = attribute(name);
+  if (!text) return {};
+  std::vector<double> result;
+  for (const std::string_view word : words_of(*text)) {
+    const auto number = finite_number(word);
+    if (!number) refuse(std::string(name) + ": " + in_quotes(word) + " is no finite number");
+    result.push_back(*number);
+  }
+  return result;
+}
+
+std::optional<std::vector<double>> XmlElement::numbers(std::string_view name,
+                                                       std::size_t count) const {
+  auto result = numbers(name);
+  if (result && result->size() != count) {
+    refuse(std::string(name) + " has " + std::to_string(result->size()) + " numbers where " +
+           std::to_string(count) + " belong");
+  }
+  return result;
+}
+
+double XmlElement::number(std::string_view name, double otherwise) const {
+  const auto result = numbers(name, 1);
+  return result ? result->front() : otherwise;
+}
+
+Eigen::Vector3d XmlElement::vector(std::string_view name, const Eigen::Vector3d& otherwise) const {
+  const auto result = numbers(name, 3);
+  return result ? Eigen::Vector3d(result->data()) : otherwise;
+}
+
+std::vector<double> XmlElement::needed_numbers(std::string_view name) const {
+  auto result = numbers(name);
+  if (!result || result->empty()) refuse("it has no " + std::string(name));
+  return *std::move(result);
+}
+
+double XmlElement::needed_number(std::string_view name) const {
+  const auto result = numbers(name, 1);
+  if (!result) refuse("it has no " + std::string(name));
+  return result->front();
+}
+
+Eigen::Vector3d XmlElement::needed_vector(std::string_view name) const {
+  const auto result = numbers(name, 3);
+  if (!result) refuse("it has no " + std::string(name));
+  return Eigen::Vector3d(result->data());
+}
+
+void XmlElement::require_attributes(std::initializer_list<std::string_view> known) const {
+  for (const auto* a = element_->FirstAttribute(); a != nullptr; a = a->Next()) {
+    if (std::find(known.begin(), known.end(), a->Name()) == known.end()) {
+      refuse("it has an attribute " + in_quotes(a->Name()) + " of unknown meaning");
+    }
+  }
+}
+
+void XmlElement::refuse(const std::string& reason) const {
+  std::string place = "line " + std::to_string(element_->GetLineNum()) + ": ";
+  // The nearest element with a name, below the root.
+  for (const tinyxml2::XMLNode* node = element_; node->Parent() != nullptr; node = node->Parent()) {
+    const tinyxml2::XMLElement* const around = node->ToElement();
+    const bool is_root = node->Parent()->ToDocument() != nullptr;
+    const char* const name = around && !is_root ? around->Attribute("name") : nullptr;
+    if (name == nullptr || *name == '\0') continue;
+    place += std::string(around->Name()) + " " + in_quotes(name) + ": ";
+    break;
+  }
+  throw Error(*file_, place + "<" + element_->Name() + ">: " + reason);
+}
+
+XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)
+    : XmlFile(path.string(), read_file(path), tag) {}
+
+XmlFile::XmlFile(std::string name, const std::string& text, std::string_view tag)
+    : name_(std::move(name)), document_(std::make_unique<tinyxml2::XMLDocument>()) {
+  if (text.find('\0') != std::string::npos) throw Error(name_, "it holds a zero byte");
+  const std::string large = fault_of_large_tag(text);
+  if (!large.empty()) throw Error(name_, large);
+  if (document_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw Error(name_, xml_fault(document_->ErrorName(), document_->ErrorLineNum()));
+  }
+  const tinyxml2::XMLElement* const root = document_->RootElement();
+  if (root == nullptr || tag != root->Name()) {
+    throw Error(name_, wrong_root(root == nullptr ? "" : root->Name(), tag));
+  }
+  if (root->NextSiblingElement() != nullptr) throw Error(name_, "it has more than one root");
+  for (const tinyxml2::XMLNode* node = document_->FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText() == nullptr) continue;
+    throw Error(
+        name_, "line " + std::to_string(node->GetLineNum()) + ": text outside of the root element");
+  }
+}
+
+XmlFile::~XmlFile() = default;
+
+XmlElement XmlFile::root() const {
+  return {*document_->RootElement(), name_};
+}
+
+std::string xml_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+namespace {
+
+class Gatherer {
+ public:
+  explicit Gatherer(const XmlElement& robot) : robot_(robot) {
+    for (const XmlElement& link : robot.children("link")) {
+      const std::string name = link.needed("name");
+      if (!links_.emplace(name, link).second) link.refuse("link '" + name + "' is not unique");
+    }
+    std::set<std::string> names;
+    for (const XmlElement& joint : robot.children("joint")) {
+      const std::string name = joint.needed("name");
+      if (!names.insert(name).second) joint.refuse("joint '" + name + "' is not unique");
+      add(joint);
+    }
+  }
+
+  UrdfTree tree() const {
+    UrdfTree result{.links = {root()}, .joints = {}};
+    std::vector<XmlElement> waiting;
+    for (;;) {
+      const auto below = below_.find(result.links.back().needed("name"));
+      if (below != below_.end()) {
+        waiting.insert(waiting.end(), below->second.rbegin(), below->second.rend());
+      }
+      if (waiting.empty()) break;
+      result.joints.push_back(waiting.back());
+      waiting.pop_back();
+      result.links.push_back(links_.at(link_at(result.joints.back(), "child")));
+    }
+    if (result.links.size() < links_.size()) refuse_ring(result.links);
+    return result;
+  }
+
+ private:
+  void add(const XmlElement& joint) {
+    for (const std::string_view end : {"parent", "child"}) {
+      const std::string link = link_at(joint, end);
+      if (!links_.contains(link)) joint.needed_child(end).refuse("link '" + link + "' not found");
+    }
+    const std::string child = link_at(joint, "child");
+    const auto [other, is_first] = above_.emplace(child, joint);
+    if (!is_first) {
+      joint.refuse("link '" + child + "' is below two joints, this one and '" +
+                   other->second.needed("name") + "'");
+    }
+    below_[link_at(joint, "parent")].push_back(joint);
+  }
+
+  XmlElement root() const {
+    std::vector<XmlElement> roots;
+    for (const XmlElement& link : robot_.children("link")) {
+      const std::string name = link.needed("name");
+      if (above_.contains(name)) continue;
+      if (!roots.empty()) {
+        link.refuse("it is a root, below no joint, as is link '" + roots[0].needed("name") + "'");
+      }
+      roots.push_back(link);
+    }
+    if (links_.empty()) robot_.refuse("it has no <link>");
+    if (roots.empty()) refuse_ring({});
+    return roots[0];
+  }
+
+  // `reached` are the links at and below the root. Upwards from any other there is no end.
+  [[noreturn]] void refuse_ring(const std::vector<XmlElement>& reached) const {
+    std::map<std::string, XmlElement> others = links_;
+    for (const XmlElement& link : reached) others.erase(link.needed("name"));
+    std::string at = others.begin()->first;
+    std::set<std::string> way;
+    while (way.insert(at).second) at = link_at(above_.at(at), "parent");
+    above_.at(at).refuse("link '" + at + "' is above itself");
+  }
+
+  XmlElement robot_;
+  std::map<std::string, XmlElement> links_{};
+  std::map<std::string, XmlElement> above_{};               // the joint above a link
+  std::map<std::string, std::vector<XmlElement>> below_{};  // those below it
+};
+
+}  // namespace
+
+UrdfTree urdf_tree(const XmlElement& robot) {
+  return Gatherer(robot).tree();
+}
+
+std::string link_at(const XmlElement& joint, std::string_view end) {
+  return joint.needed_child(end).needed("link");
+}
+
+bool is_xacro(const std::filesystem::path& path) {
+  return path.extension() == ".xacro";
+}
+
+std::string urdf_text(const std::filesystem::path& path) {
+  if (!is_xacro(path)) return read_file(path);
+  const std::string file = path.string();
+  // So that a name that begins with a dash is no option.
+  const std::array<std::string, 1> arguments = {path.is_relative() ? "./" + file : file};
+  ProgramOutput output = run_program("xacro", arguments, STDOUT_FILENO);
+  if (!output.not_started.empty()) {
+    throw Error(file, "needs the program xacro, which makes a URDF of it and cannot be run: " +
+                          output.not_started);
+  }
+  if (WIFSIGNALED(output.status)) throw Error(file, "xacro was ended by a signal");
+  if (WEXITSTATUS(output.status) != 0) {
+    throw Error(file, "xacro makes no URDF of it (exit code " +
+                          std::to_string(WEXITSTATUS(output.status)) + ")");
+  }
+  return std::move(output.bytes);
+}
+
+}  // namespace spherule::internal
