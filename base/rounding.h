@@ -23,10 +23,8 @@
 // differences lose 2^-1022 each, a radicand of at least 2^-920 loses 3 * 2^-1022. Sums and
 // differences (add_up and so on) are exact before they are rounded unless they are subnormal.
 //
-// Fast-math: in a source compiled with it, a compiler takes NaN for impossible and changes the
-// order of operations. Such a source gets no inline functions but calls to those of
-// base/rounding.cpp, of the same names in a namespace of their own, so that a linker cannot take
-// the one for the other.
+// Fast-math: a source that is compiled with it is refused by an #error below, since there a
+// compiler takes NaN for impossible and changes the order of operations.
 //
 // @code{.cpp}
 // #include <spherule/base/rounding.h>
@@ -44,12 +42,7 @@
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0) || \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
-// Defined where a source is compiled with -ffast-math, which -Ofast includes, or with a part of it
-// alone: -ffinite-math-only, -fassociative-math or -freciprocal-math.
-//
-// Clang does not tell of the last two. They change no result below, as they need others beside
-// them to reorder sums, and nothing is divided.
-#define SPHERULE_FAST_MATH
+#error "spherule: -ffast-math, -Ofast and parts of them invalidate the proved rounding bounds"
 #endif
 
 namespace spherule {
@@ -65,28 +58,6 @@ inline constexpr double kUnderflow = 0x1p-530;
 
 inline constexpr double kRelativeUp = 1.0 + 8.0 * kUnitRoundoff;
 inline constexpr double kRelativeDown = 1.0 - 8.0 * kUnitRoundoff;
-
-#ifdef SPHERULE_FAST_MATH
-
-// Described below.
-inline namespace ieee {
-double next_up(double x);
-double next_down(double x);
-double add_up(double a, double b);
-double sum_up(double a, double b);
-double add_down(double a, double b);
-double sub_up(double a, double b);
-double sub_down(double a, double b);
-double mul_up(double a, double b);
-double norm_upper(const Eigen::Vector3d& v);
-double norm_lower(const Eigen::Vector3d& v);
-double distance_upper(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-double distance_lower(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-bool is_usable_coordinate(double x);
-bool is_usable_point(const Eigen::Vector3d& p);
-}  // namespace ieee
-
-#else
 
 // The neighbouring double above, and below.
 inline double next_up(double x) {
@@ -140,29 +111,6 @@ inline bool is_usable_coordinate(double x) {
 inline bool is_usable_point(const Eigen::Vector3d& p) {
   return is_usable_coordinate(p.x()) && is_usable_coordinate(p.y()) && is_usable_coordinate(p.z());
 }
-
-#endif  // SPHERULE_FAST_MATH
-
-}  // namespace spherule
-
-// Refuses threads that do not round to nearest.
-//
-// @code{.cpp}
-// #include <spherule/base/error.h>
-// #include <cfenv>
-//
-// bool is_refused = false;
-// std::fesetround(FE_UPWARD);
-// try {
-//   spherule::require_rounding_to_nearest();
-// } catch (const spherule::Error&) {
-//   is_refused = true;
-// }
-// std::fesetround(FE_TONEAREST);
-// assert(is_refused);
-// @endcode
-
-namespace spherule {
 
 // Throws Error unless this thread rounds to nearest, as every proved bound presumes. build_tree(),
 // refit(), check(), load_tree(), place_external_spheres(), cover(), repair(), certify(),

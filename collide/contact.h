@@ -20,6 +20,8 @@
 
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"
+#include "geometry/pose.h"
+#include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>
 

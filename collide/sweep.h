@@ -20,6 +20,8 @@
 
 #include "collide/collide.h"
 #include "collide/motion/motion.h"
+#include "geometry/pose.h"
+#include "spheretree/sphere_tree.h"
 
 #include <chrono>
 #include <cstdint>

@@ -87,7 +87,6 @@ std::pair<std::int32_t, Eigen::AlignedBox3d> MeshDistance::build(std::int32_t be
 
 SurfaceDistance MeshDistance::operator()(const Vector3d& point, double limit,
                                          std::size_t most_leaves) const {
-  internal::require_content(!leaves_.empty(), "MeshDistance");
   SurfaceDistance best;
   best.lower = limit;
   double reach = limit;                      // nearest upper bound so far
@@ -153,7 +152,6 @@ bool MeshDistance::may_intersect(const Eigen::Array3d& low_corner,
 }
 
 double MeshDistance::winding_number(const Vector3d& point) const {
-  internal::require_content(!leaves_.empty(), "MeshDistance");
   double angle = 0.0;
   for (const Corners& t : corners_) {
     angle += internal::solid_angle(t.a - point, t.b - point, t.c - point);

@@ -15,7 +15,6 @@
 // assert(mesh.winding_number({0.1, 0.1, 0.1}) > 0.999);  // inside
 // @endcode
 
-#include "base/moved_from.h"
 #include "geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>
@@ -42,8 +41,7 @@ struct SurfaceDistance {
 // simplifier rest on it, so every answer is an interval that contains the exact distance: the
 // bounds of geometry/point_triangle.h for the triangles examined, and for the boxes that were
 // skipped that they are no nearer than the answer. Usually upper - lower is below 1e-14 of the
-// distance to the corners of the nearest triangle. Thread-safe after construction. Queries of one
-// whose content was moved to another throw Error.
+// distance to the corners of the nearest triangle. Thread-safe after construction.
 class MeshDistance {
  public:
   // Keeps a copy of the corners. The mesh must have passed validate() (geometry/triangle_mesh.h).
@@ -77,7 +75,6 @@ class MeshDistance {
   // Calls visit(corners) for every triangle.
   template <typename Visit>
   void visit_all(Visit visit) const {
-    internal::require_content(!leaves_.empty(), "MeshDistance");
     for (const Corners& t : corners_) visit(t);
   }
 
@@ -120,7 +117,6 @@ class MeshDistance {
 template <typename Visit>
 bool MeshDistance::visit_ray(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                              Visit visit) const {
-  internal::require_content(!leaves_.empty(), "MeshDistance");
   std::array<std::int32_t, kStackSize> stack;
   std::size_t size = 0;
   if (may_intersect(box_.min().array(), box_.max().array(), point, direction))

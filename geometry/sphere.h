@@ -27,19 +27,6 @@ struct Sphere {
   double radius = 0.0;
 };
 
-#ifdef SPHERULE_FAST_MATH
-
-// For sources compiled with fast-math (base/rounding.h); described below.
-inline namespace ieee {
-bool operator==(const Sphere& a, const Sphere& b);
-bool is_usable(const Sphere& s);
-bool certainly_encloses(const Sphere& outer, const Sphere& inner);
-bool certainly_contains(const Sphere& sphere, const Eigen::Vector3d& point, double reach = 0.0);
-bool possibly_overlap(const Sphere& a, const Sphere& b);
-}  // namespace ieee
-
-#else
-
 // Equal numbers.
 inline bool operator==(const Sphere& a, const Sphere& b) {
   return a.center == b.center && a.radius == b.radius;
@@ -69,7 +56,5 @@ inline bool certainly_contains(const Sphere& sphere, const Eigen::Vector3d& poin
 inline bool possibly_overlap(const Sphere& a, const Sphere& b) {
   return distance_lower(a.center, b.center) <= add_up(a.radius, b.radius);
 }
-
-#endif  // SPHERULE_FAST_MATH
 
 }  // namespace spherule

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/json.h"
-#include "spheretree/internal/file_content.h"
+#include "io/sphere_text.h"
 
 #include <nlohmann/json.hpp>
 

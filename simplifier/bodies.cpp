@@ -5,6 +5,7 @@
 #include "base/rounding.h"
 #include "base/stopwatch.h"
 #include "base/threads.h"
+#include "simplifier/option_record.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

@@ -9,6 +9,7 @@
 #include "simplifier/internal/stages.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/proof/protrusion.h"
+#include "simplifier/simplify.h"
 #include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/solid/sphere_hierarchy.h"

@@ -9,6 +9,7 @@
 #include "geometry/triangle_mesh.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/proof/protrusion.h"
+#include "simplifier/simplify.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_blocks.h"
 #include "simplifier/stage2/cover_fitter.h"

@@ -8,6 +8,7 @@
 #include "geometry/mesh_report.h"
 #include "simplifier/concave_edges.h"
 #include "simplifier/internal/stages.h"
+#include "simplifier/simplify.h"
 #include "simplifier/solid/cells.h"
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/stage1/random_placement.h"

@@ -2,7 +2,6 @@
 #include "spheretree/build.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/rounding.h"
 #include "spheretree/check.h"
 #include "spheretree/tree_nodes.h"
@@ -80,7 +79,6 @@ SphereTree build_tree(std::span<const Sphere> spheres, const BuildOptions& optio
 
 SphereTree refit(SphereTree tree, std::span<const Sphere> moved) {
   require_rounding_to_nearest();
-  internal::require_content(tree.node_count() > 0, "SphereTree");
   SphereTreeData& data = tree.data_;
   if (moved.size() != data.spheres.size()) {
     throw Error("sphere tree", std::to_string(moved.size()) + " moved spheres for a tree over " +

@@ -70,8 +70,8 @@ namespace spherule {
 // many. To move all spheres as one, move the tree's Pose instead.
 //
 // Throws Error if the numbers of spheres differ, a number in `moved` is not usable, or the sphere
-// around all of them would not be, for a tree that was moved from, and in a thread that does not
-// round to nearest (rounding_mode.h).
+// around all of them would not be, and in a thread that does not round to nearest
+// (base/rounding.h).
 SphereTree refit(SphereTree tree, std::span<const Sphere> moved);
 
 }  // namespace spherule

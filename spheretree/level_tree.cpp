@@ -2,7 +2,6 @@
 #include "spheretree/level_tree.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/rounding.h"
 
 #include <queue>
@@ -178,7 +177,6 @@ LevelTree build_tree_from_levels(std::span<const Sphere> spheres,
 }
 
 std::vector<Sphere> cut(const SphereTree& tree, std::size_t count) {
-  internal::require_content(tree.node_count() > 0, "SphereTree");
   // The largest sphere first, of equals the first node.
   using Entry = std::pair<double, std::int64_t>;
   std::priority_queue<Entry> open;

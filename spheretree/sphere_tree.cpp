@@ -2,7 +2,6 @@
 #include "spheretree/sphere_tree.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/rounding.h"
 #include "spheretree/check.h"
 #include "spheretree/tree_nodes.h"
@@ -22,25 +21,6 @@ SphereTree::SphereTree(SphereTreeData data) : data_(std::move(data)) {
   depth_ = report.depth;
   branching_ = report.branching;
   measure();
-}
-
-SphereTree::SphereTree(SphereTree&& other) noexcept
-    : data_(std::exchange(other.data_, {})),
-      depth_(other.depth_),
-      branching_(other.branching_),
-      root_(other.root_),
-      reach_(std::exchange(other.reach_, std::numeric_limits<double>::infinity())),
-      box_(other.box_) {}
-
-SphereTree& SphereTree::operator=(SphereTree&& other) noexcept {
-  if (this == &other) return *this;
-  data_ = std::exchange(other.data_, {});
-  depth_ = other.depth_;
-  branching_ = other.branching_;
-  root_ = other.root_;
-  reach_ = std::exchange(other.reach_, std::numeric_limits<double>::infinity());
-  box_ = other.box_;
-  return *this;
 }
 
 void SphereTree::measure() {
@@ -65,7 +45,6 @@ void SphereTree::measure() {
 
 std::vector<Sphere> SphereTree::level(int level) const {
   assert(level >= 0);
-  internal::require_content(node_count() > 0, "SphereTree");
   std::vector<Sphere> spheres;
   // Breadth-first order: the nodes at one distance from the root are consecutive.
   std::size_t begin = 0;

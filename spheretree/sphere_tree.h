@@ -58,19 +58,12 @@ struct AxisAlignedBox {
 //     necklaces", 2004): the sphere of every inner node encloses the spheres of its children in
 //     exact arithmetic (hence, by induction, every sphere below it);
 //  5. no inner node has more than kMaxBranching children.
-//
-// A tree whose content was moved to another has no nodes: queries of it throw Error, or end the
-// program with its message where they are noexcept.
 class SphereTree {
  public:
   static constexpr int kMaxBranching = 16;
 
   // Makes the tree that `data` describes. Throws Error, naming the node, if an invariant fails.
   explicit SphereTree(SphereTreeData data);
-  SphereTree(const SphereTree&) = default;
-  SphereTree(SphereTree&& other) noexcept;
-  SphereTree& operator=(const SphereTree&) = default;
-  SphereTree& operator=(SphereTree&& other) noexcept;
 
   // The spheres of the leaves as they were given, and the number of all nodes.
   std::span<const Sphere> spheres() const { return data_.spheres; }
@@ -116,7 +109,7 @@ class SphereTree {
   int depth_ = 0;
   int branching_ = 0;
   Sphere root_;
-  double reach_ = 0.0;  // infinite once the content was moved away: then nothing is far apart
+  double reach_ = 0.0;
   AxisAlignedBox box_;
 };
 

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rounding.h"
-#include "spheretree/internal/file_content.h"
+#include "spheretree/tree_bytes.h"
 
 #include <bit>
 #include <concepts>

@@ -16,7 +16,6 @@
 // @endcode
 
 #include "adapters/fcl/conversions.h"
-#include "base/moved_from.h"
 #include "collide/meshes/mesh_contact.h"
 #include "simplifier/simplify.h"
 #include "spheretree/sphere_tree.h"
@@ -72,7 +71,6 @@ class SphereModel final : public fcl::CollisionGeometry<S> {
   // cover.
   explicit SphereModel(CoveredPart part) : part_(std::move(part)) {
     if (!part_.spheres) throw Error("sphere model", "there are no spheres");
-    spherule::internal::require_content(part_.spheres->node_count() > 0, "SphereTree");
     if (part_.mesh && &part_.mesh->cover() != part_.spheres.get()) {
       throw Error("sphere model", "the mesh is covered by other spheres");
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/cover.h"
+#include "simplifier/simplify.h"
 
 #include <string>
 #include <vector>

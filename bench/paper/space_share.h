@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 
 namespace spherule {
 

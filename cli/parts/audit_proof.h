@@ -4,7 +4,6 @@
 #include "cli/files/model_file.h"
 #include "cli/files/model_unit.h"
 #include "simplifier/simplify.h"
-#include "simplifier/types/certificate.h"
 
 #include <optional>
 #include <string>

@@ -10,7 +10,7 @@
 #include "cli/text/progress.h"
 #include "io/mesh_io.h"
 #include "simplifier/baseline/made_conservative.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "simplifier/simplify.h"
-#include "simplifier/types/certificate.h"
 
 #include <nlohmann/json.hpp>
 

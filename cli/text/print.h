@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/levels.h"
+#include "simplifier/simplify.h"
 
 #include <span>
 #include <string>

@@ -10,9 +10,6 @@
 // found apart, but not the answer: what is neither certainly apart nor certainly in contact is
 // decided by the caller.
 
-// Every function with vectors is inlined or local: none crosses a boundary between files.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include "collide/kernels/plan_poses.h"
 #include "collide/kernels/plan_search.h"
 #include "collide/kernels/plan_vectors.h"

@@ -11,7 +11,7 @@
 namespace spherule::internal {
 namespace {
 
-double length(const double (&v)[3]) {
+double length(const double* v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
@@ -115,10 +115,6 @@ constexpr double kLongestWay = 1024.0;
 
 // As a body that is grown by g' is apart: MechanismCheck::within() says why.
 constexpr double kInflationDown = 1.0 - 0x1p-18;
-
-double length(const double* v) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 
 // Of any point of a body from a joint that carries it, at most, summed up for each variable.
 std::vector<double> reaches(const KernelProblem& problem) {

@@ -232,9 +232,6 @@ class BlockPair {
 // found apart, but not the answer: a pair that is not surely apart or surely in contact is
 // confirmed elsewhere.
 
-// Every function with vectors is inlined: none crosses a boundary between files.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 

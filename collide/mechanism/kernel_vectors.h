@@ -10,6 +10,9 @@
 #include <immintrin.h>
 #endif
 
+// Every function with vectors is inlined or local: none crosses a boundary between files.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 

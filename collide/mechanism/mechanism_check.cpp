@@ -2,7 +2,6 @@
 #include "collide/mechanism/mechanism_check.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/rounding.h"
 #include "collide/mechanism/mechanism_parts.h"
 #include "collide/search/packed_tree.h"
@@ -163,12 +162,8 @@ void check_input(std::span<const MechanismFrame> frames, std::span<const Mechani
   internal::check_frames(frames);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     internal::check_body(i, bodies[i].frame, frames.size(), bodies[i].tree != nullptr);
-    internal::require_content(bodies[i].tree->node_count() > 0, "SphereTree");
   }
   internal::check_obstacles(obstacles);
-  for (const MechanismObstacle& obstacle : obstacles) {
-    internal::require_content(obstacle.tree->node_count() > 0, "SphereTree");
-  }
   internal::check_pairs(pairs, bodies.size(), obstacles.size());
   internal::check_pose_error(pose_error);
 }

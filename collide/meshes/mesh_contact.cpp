@@ -2,7 +2,6 @@
 #include "collide/meshes/mesh_contact.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "collide/meshes/listed_triangles.h"
 #include "collide/meshes/mesh_inside.h"
 #include "collide/meshes/patch_trees.h"
@@ -325,11 +324,7 @@ ListedTriangles::ListedTriangles(const CoveredMesh& a, const Pose& world_from_a,
               0.5 * (world_from_b.translation() - world_from_a.translation()), pose.b_from_a()}},
       scene_size_(pose.scene_size()),
       corner_pad_(pose.leaf_pad()),
-      image_pad_(kImagePad * pose.scene_size() + kUnderflow) {
-  for (const Side& side : sides_) {
-    require_content(side.mesh.mesh().tree().node_count() > 0, "CoveredMesh");
-  }
-}
+      image_pad_(kImagePad * pose.scene_size() + kUnderflow) {}
 
 Triangle ListedTriangles::Side::placed(std::int32_t triangle) const {
   const Triangle& corners = mesh.mesh().triangle(triangle);

@@ -20,11 +20,12 @@
 // assert(!collides(part, {}, part, beside));     // the meshes do not
 // @endcode
 
-#include "base/moved_from.h"
-#include "collide/collide.h"
 #include "collide/meshes/mesh_tree.h"
 #include "collide/meshes/solid_mesh.h"
+#include "collide/search/query.h"
+#include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
+#include "spheretree/sphere_tree.h"
 
 #include <cstdint>
 #include <limits>
@@ -52,8 +53,7 @@ class PatchTrees;
 // inside: what lies within such a one without touching it is free. So is what only several parts
 // enclose that share no edges, as halves that are not welded do.
 //
-// Not to be queried once it was moved from: a query that finds its content gone throws Error, or
-// ends the program where it is noexcept.
+// Not to be queried once it was moved from.
 class CoveredMesh {
  public:
   // Proves that the spheres cover every triangle, and throws Error, naming one, where that fails.
@@ -85,11 +85,11 @@ class CoveredMesh {
   // Lists the triangles under each sphere.
   std::shared_ptr<const internal::PatchTrees> share_out();
 
-  internal::SharedContent<SphereTree> cover_;
+  std::shared_ptr<const SphereTree> cover_;
   SolidMesh solid_;
   std::vector<std::int32_t> first_;  // of each sphere in triangles_, and the end
   std::vector<std::int32_t> triangles_;
-  internal::SharedContent<internal::PatchTrees> patches_;
+  std::shared_ptr<const internal::PatchTrees> patches_;
 };
 
 // A triangle of each of two meshes.

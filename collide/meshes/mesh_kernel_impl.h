@@ -23,8 +23,6 @@
 // is inside the sphere for sure if the margin is at least 2 (r' - r) and f and 16 v S are in r' -
 // r.
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include "collide/mechanism/kernel_search.h"
 #include "collide/meshes/packed_mesh.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/meshes/mesh_tree.h"
 
-#include "collide/collide.h"
 #include "collide/meshes/mesh_search.h"
 #include "collide/meshes/packed_mesh.h"
 #include "collide/meshes/triangle_leaves.h"
@@ -9,6 +8,7 @@
 #include "collide/search/nearest_first.h"
 #include "collide/search/packed_tree.h"
 #include "collide/search/queries.h"
+#include "collide/search/query.h"
 #include "geometry/enclosing_sphere.h"
 #include "geometry/triangles.h"
 #include "spheretree/build.h"

@@ -17,12 +17,14 @@
 // assert(within(tree, {}, surface, {}, 1.0) && distance(tree, {}, surface, {}).upper < 1.001);
 // @endcode
 
-#include "base/moved_from.h"
-#include "collide/collide.h"
+#include "collide/search/query.h"
+#include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
+#include "spheretree/sphere_tree.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace spherule {
@@ -33,8 +35,7 @@ class PackedMesh;
 
 // A sphere tree whose leaves are triangles: every leaf sphere encloses one triangle. Immutable. The
 // mesh is judged as stored: its vertex_error, the distance to the file's mesh, is not added to it.
-// Threads may share it. Not to be queried once it was moved from: a query that finds its content
-// gone throws Error, or ends the program where it is noexcept.
+// Threads may share it. Not to be queried once it was moved from.
 class MeshTree {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -52,7 +53,7 @@ class MeshTree {
  private:
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
   SphereTree tree_;  // sphere i is the sphere of triangle i
-  internal::SharedContent<internal::PackedMesh> packed_;
+  std::shared_ptr<const internal::PackedMesh> packed_;
 };
 
 // Whether a set of spheres and the surface of a mesh meet, triangles in the place of the second

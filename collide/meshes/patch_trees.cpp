@@ -181,7 +181,7 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-const Box& box_of(const Patch& patch) {
+const Box& box_of_patch(const Patch& patch) {
   return patch.box;
 }
 
@@ -200,7 +200,7 @@ PatchBox seen_from(const Vector3d& origin, const Box& box) {
 
 // Halves the patches across the longest side of their box.
 std::pair<std::span<Patch>, std::span<Patch>> halves(std::span<Patch> patches) {
-  sort_along_longest_side(patches, box_of, [](const Patch& patch) { return patch.triangle; });
+  sort_along_longest_side(patches, box_of_patch, [](const Patch& patch) { return patch.triangle; });
   const std::size_t middle = (patches.size() + 1) / 2;
   return {patches.first(middle), patches.subspan(middle)};
 }
@@ -234,7 +234,7 @@ std::int32_t build(std::span<Patch> patches, const Vector3d& origin,
     std::fill_n(box.half, 3, -std::numeric_limits<float>::infinity());
     std::int32_t child = -1;
     if (i < parts.size()) {
-      box = seen_from(origin, box_around(parts[i], box_of));
+      box = seen_from(origin, box_around(parts[i], box_of_patch));
       child = parts[i].size() == 1 ? ~parts[i][0].triangle : build(parts[i], origin, nodes);
     }
     PatchNode& node = nodes[at];
@@ -259,7 +259,7 @@ PatchTrees::PatchTrees(std::span<const Patch> patches, std::span<const Sphere> s
     of_sphere.assign(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(count));
     patches = patches.subspan(count);
     const Vector3d& origin = spheres[sphere].center;
-    roots_[sphere] = {seen_from(origin, box_around(std::span(of_sphere), box_of)),
+    roots_[sphere] = {seen_from(origin, box_around(std::span(of_sphere), box_of_patch)),
                       build(of_sphere, origin, nodes_)};
   }
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/meshes/solid_mesh.h"
 
-#include "base/moved_from.h"
 #include "base/rounding.h"
-#include "collide/collide.h"
 #include "collide/meshes/mesh_inside.h"
 #include "collide/meshes/mesh_search.h"
 #include "collide/meshes/spheres_inside.h"
 #include "collide/search/nearest_first.h"
+#include "collide/search/query.h"
 #include "collide/search/traversal.h"
 #include "geometry/point_triangle.h"
 #include "spheretree/build.h"
@@ -281,7 +280,6 @@ bool is_held(const SolidMesh& solid, const Sphere& sphere) {
 }  // namespace
 
 std::vector<Sphere> spheres_around(const SolidMesh& solid) {
-  require_content(solid.mesh().tree().node_count() > 0, "SolidMesh");
   std::vector<Sphere> spheres;
   double sum = 0.0;
   for (const Sphere& sphere : solid.mesh().tree().spheres()) {

@@ -18,11 +18,11 @@
 // assert(contact->overlap_depth > 0.249 && contact->overlap_depth <= 0.25);
 // @endcode
 
-#include "base/moved_from.h"
-#include "collide/collide.h"
 #include "collide/meshes/mesh_tree.h"
+#include "collide/search/query.h"
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
+#include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>
 
@@ -74,8 +74,8 @@ class NodeBoxes;
 // is TriangleMesh::vertex_error. Each surface is judged by itself: overlapping ones take nothing
 // from each other, whichever way they are turned, and a sealed hollow is inside, as is what it
 // holds. A part with a boundary, or which cannot be turned alike, has no inside, and what lies
-// within it without touching it is free. Not to be queried once it was moved from: a query that
-// finds its content gone throws Error, or ends the program where it is noexcept.
+// within it without touching it is free. Not to be queried once it was moved
+// from.
 class SolidMesh {
  public:
   // Throws Error for a mesh that validate() refuses.
@@ -92,9 +92,7 @@ class SolidMesh {
   const internal::MeshInside& inside() const { return *inside_; }
   const internal::NodeBoxes& node_boxes() const { return *node_boxes_; }
   // Copies of a solid share it, and no others do.
-  const std::shared_ptr<const internal::MeshInside>& shared_inside() const {
-    return inside_.pointer();
-  }
+  const std::shared_ptr<const internal::MeshInside>& shared_inside() const { return inside_; }
 
  private:
   friend class CoveredMesh;
@@ -102,8 +100,8 @@ class SolidMesh {
 
   MeshTree mesh_;
   double inflation_;
-  internal::SharedContent<internal::MeshInside> inside_;
-  internal::SharedContent<internal::NodeBoxes> node_boxes_;
+  std::shared_ptr<const internal::MeshInside> inside_;
+  std::shared_ptr<const internal::NodeBoxes> node_boxes_;
 };
 
 // Whether a set of spheres and a solid, rigidly placed, overlap.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/collide.h"
 #include "collide/search/deadline.h"
+#include "collide/search/query.h"
 #include "collide/search/traversal.h"
 
 #include <optional>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/rounding.h"
-#include "collide/collide.h"
 #include "collide/search/deadline.h"
+#include "collide/search/query.h"
 #include "collide/search/relative_pose.h"
 #include "collide/search/traversal.h"
 #include "spheretree/sphere_tree.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/collide.h"
 #include "collide/search/box_gap.h"
 #include "collide/search/deadline.h"
+#include "collide/search/query.h"
 #include "collide/search/traversal.h"
 
 #include <algorithm>

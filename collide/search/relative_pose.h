@@ -59,7 +59,6 @@
 // absolute term kUnderflow = 2^-530 in every pad is far above the first (a few dozen products) and
 // gives s^2 >= 2^-1060, far above the few 2^-1075 lost in d2.
 
-#include "base/moved_from.h"
 #include "base/rounding.h"
 #include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
@@ -96,7 +95,6 @@ struct FrameChange {
 // How far from the origin of its frame any sphere of a layered tree reaches, those of nodes
 // included.
 inline double node_reach(const SphereTree& tree) {
-  require_content(tree.node_count() > 0, "SphereTree");
   const Sphere& root = tree.root();
   const double of_root =
       (std::abs(root.center.x()) + std::abs(root.center.y()) + std::abs(root.center.z())) +

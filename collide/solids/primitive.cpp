@@ -2,10 +2,10 @@
 #include "collide/solids/primitive.h"
 
 #include "base/error.h"
-#include "collide/collide.h"
 #include "collide/search/deadline.h"
 #include "collide/search/nearest_first.h"
 #include "collide/search/queries.h"
+#include "collide/search/query.h"
 #include "collide/search/traversal.h"
 #include "collide/solids/solid_pose.h"
 

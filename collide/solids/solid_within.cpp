@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/solids/solid_within.h"
 
-#include "collide/collide.h"
 #include "collide/meshes/mesh_inside.h"
 #include "collide/search/box_gap.h"
 #include "collide/search/queries.h"
+#include "collide/search/query.h"
 #include "collide/search/traversal.h"
 #include "collide/solids/solid_pose.h"
 #include "collide/solids/triangle_field.h"

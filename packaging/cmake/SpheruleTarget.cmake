@@ -3,9 +3,6 @@
 # model, and how a library is installed.
 include(GNUInstallDirs)
 include(SpherulePkgConfig)
-if(SPHERULE_PRECOMPILE)
-  include(SpherulePrecompiled)
-endif()
 
 # Users write <spherule/geometry/sphere.h>. In the build tree this link leads there; installed, the
 # headers stand under include/spherule/.
@@ -33,9 +30,6 @@ function(spherule_compile_settings target kind)
     target_link_options(${target} PRIVATE LINKER:--as-needed)
   endif()
   spherule_program_options(${target} ${kind})
-  if(SPHERULE_PRECOMPILE AND NOT "${kind}" STREQUAL "binding")
-    spherule_precompile(${target} ${kind})
-  endif()
 endfunction()
 
 # A shared library exports what exports.map.in says, takes its own functions rather than a program's
@@ -52,18 +46,17 @@ function(spherule_shared_settings target)
   set_property(GLOBAL APPEND PROPERTY SPHERULE_SHARED_LIBRARIES ${target})
 endfunction()
 
-# Declares the library spherule::NAME from HEADERS (public), SOURCES (everything else; a library of
-# headers has none), APART (sources that have local names in common with others, or that alone need a
-# large library: not joined with them, SPHERULE_PRECOMPILE) and LINKS (public dependencies), and
+# Declares the library spherule::NAME from HEADERS (public), SHARED (headers that other libraries of the
+# project include, too, but that are not installed; all others are private), SOURCES (a library of
+# headers has none) and LINKS (public dependencies), and
 # installs it as the component NAME of the package. Headers are reached as "geometry/sphere.h" from
 # inside the repository and as <spherule/geometry/sphere.h> by users.
 function(spherule_library name)
-  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;APART;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;SHARED;SOURCES;LINKS" ${ARGN})
   set(target spherule_${name})
   if(ARG_SOURCES)
     set(scope PUBLIC)
-    add_library(${target} ${ARG_SOURCES} ${ARG_APART})
-    set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    add_library(${target} ${ARG_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     if(BUILD_SHARED_LIBS)
       spherule_shared_settings(${target})

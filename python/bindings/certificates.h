@@ -6,9 +6,6 @@
 #include "io/sphere_file.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/external_spheres.h"
-#include "simplifier/types/levels.h"
 #include "simplifier/types/zones.h"
 
 #include <memory>

@@ -5,8 +5,7 @@
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/leaks.h"
 #include "simplifier/repair.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/levels.h"
+#include "simplifier/simplify.h"
 
 #include <pybind11/stl.h>
 

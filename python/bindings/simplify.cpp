@@ -5,7 +5,6 @@
 #include "python/bindings/certificates.h"
 #include "python/bindings/support.h"
 #include "simplifier/concave_edges.h"
-#include "simplifier/types/external_spheres.h"
 #include "simplifier/types/zones.h"
 #include "simplifier/zone_file.h"
 

@@ -113,8 +113,7 @@ struct RobotClearance {
 };
 
 // Is a robot free of obstacles and of itself? A snapshot of a RobotScene, immutable: threads may
-// share it, each with a scratch of its own; a copy shares what the first one holds, and so does one
-// whose content was moved to another.
+// share it, each with a scratch of its own; a copy shares what the first one holds.
 //
 // "Free" means: no two spheres (padded as the scene says) of what is tested against each other
 // overlap or touch, in exact arithmetic under the poses that forward_kinematics() computes (G4); a
@@ -137,8 +136,8 @@ class RobotChecker {
   // The robot that is checked.
   const RobotModel& robot() const;
 
-  // What a query writes to: made for one snapshot and its copies; with that of another one, or one
-  // whose content was moved away, every query throws Error. Unless it says so, no query allocates
+  // What a query writes to: made for one snapshot and its copies; with that of another one every
+  // query throws Error. Unless it says so, no query allocates
   // once its scratch is warm.
   class Scratch {
    public:

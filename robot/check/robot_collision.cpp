@@ -2,7 +2,6 @@
 #include "robot/check/robot_collision.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "robot/check/body_pairs.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/shared_work.h"
@@ -17,8 +16,6 @@ namespace spherule {
 bool robot_collides(const RobotModel& robot, std::span<const Pose> world_from_link,
                     const SphereTree& obstacle, const Pose& world_from_obstacle) noexcept {
   const std::vector<Link>& links = robot.links();
-  internal::require_content(!links.empty(), "RobotModel");
-  internal::require_content(obstacle.node_count() > 0, "SphereTree");
   assert(world_from_link.size() == links.size());
   for (std::size_t i = links.size(); i-- > 0;) {
     for (const auto& tree : links[i].trees) {

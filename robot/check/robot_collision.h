@@ -36,7 +36,7 @@ namespace spherule {
 // Whether a tree on any link overlaps a placed obstacle: collides() for each of them, the last link
 // first, because the tool at the end of the chain is what usually touches. `world_from_link` as
 // forward_kinematics() gives it, one pose for each link; the number is not checked. Links are not
-// tested against each other. Of a robot or a tree that was moved from it ends the program.
+// tested against each other.
 bool robot_collides(const RobotModel& robot, std::span<const Pose> world_from_link,
                     const SphereTree& obstacle, const Pose& world_from_obstacle) noexcept;
 

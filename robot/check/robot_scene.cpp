@@ -2,7 +2,6 @@
 #include "robot/check/robot_scene.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/rounding.h"
 #include "base/text.h"
 #include "collide/meshes/mesh_contact.h"
@@ -117,11 +116,9 @@ void RobotScene::add(std::string name, ObstacleShape shape, const Pose& world_fr
     require_primitive(*primitive, name);
   } else if (const auto* tree = std::get_if<std::shared_ptr<const SphereTree>>(&shape)) {
     if (!*tree) throw Error(name, "the tree is missing");
-    internal::require_content((*tree)->node_count() > 0, "SphereTree");
   } else {
     const auto& solid = std::get<std::shared_ptr<const SolidMesh>>(shape);
     if (!solid) throw Error(name, "the mesh is missing");
-    internal::require_content(solid->mesh().tree().node_count() > 0, "SolidMesh");
   }
   obstacles_.emplace(std::move(name), Obstacle{std::move(shape), world_from_shape});
 }
@@ -153,7 +150,6 @@ void RobotScene::attach(std::string name, std::string_view link,
   require_free_name(name);
   robot_.require_link(link);
   if (!tree) throw Error(name, "the tree is missing");
-  internal::require_content(tree->node_count() > 0, "SphereTree");
   attached_.emplace(std::move(name),
                     Attached{std::string(link), std::move(tree), link_from_object});
 }
@@ -529,7 +525,6 @@ class RobotScene::Snapshot {
 };
 
 RobotChecker RobotScene::snapshot(const RobotCheckerOptions& options) const {
-  internal::require_content(!robot_.links().empty(), "RobotScene");
   if (std::find(options.meshes.begin(), options.meshes.end(), nullptr) != options.meshes.end()) {
     throw Error("robot checker", "a mesh is missing");
   }

@@ -76,9 +76,6 @@ struct Region {
 // moves one against the other. An attached object moves with its link but has no part in what that
 // link is allowed: a long tool is tested against the links next to its flange. Contacts that are
 // intended are taken out, by allow_contact().
-//
-// One whose content was moved to another has no robot: snapshot() throws Error, as does what names
-// a body.
 class RobotScene {
  public:
   // The spheres are those that the robot's links carry. Allowed at first: what AllowedCollisions

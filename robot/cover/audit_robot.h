@@ -20,7 +20,7 @@
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_model.h"
 #include "simplifier/repair.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 
 #include <cstddef>
 #include <optional>

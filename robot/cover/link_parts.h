@@ -10,7 +10,6 @@
 #include "robot/model/link_spheres.h"
 #include "robot/model/robot_model.h"
 #include "simplifier/simplify.h"
-#include "simplifier/types/certificate.h"
 
 #include <cstddef>
 #include <optional>

@@ -2,7 +2,6 @@
 #include "robot/model/kinematics.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/rounding.h"
 #include "robot/model/shortest_motion.h"
 
@@ -68,7 +67,6 @@ Pose move(const Pose& world_from_parent, const Quaterniond& parent_rotation, con
 
 void forward_kinematics(const RobotModel& robot, std::span<const double> configuration,
                         std::vector<Pose>& world_from_link, const Pose& world_from_root) {
-  internal::require_content(!robot.links().empty(), "RobotModel");
   if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
     throw Error("configuration", "it has " + std::to_string(configuration.size()) +
                                      " numbers where the robot has " +

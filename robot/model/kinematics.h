@@ -34,8 +34,7 @@ inline constexpr double kLargestJointPosition = MechanismCheck::kLargestVariable
 // `world_from_link` is resized and reused, so that a warm call does not allocate.
 // `world_from_root` must not be an element of it.
 // Throws Error for a configuration of the wrong size or with a number that is not finite, and for
-// one that moves a link beyond kMaxCoordinate from the world's origin, and for a robot that was
-// moved from.
+// one that moves a link beyond kMaxCoordinate from the world's origin.
 void forward_kinematics(const RobotModel& robot, std::span<const double> configuration,
                         std::vector<Pose>& world_from_link, const Pose& world_from_root = {});
 

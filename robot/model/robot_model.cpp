@@ -2,7 +2,6 @@
 #include "robot/model/robot_model.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 #include "base/text.h"
 #include "collide/kernels/plan_trees.h"
 #include "robot/model/link_spheres.h"
@@ -162,7 +161,6 @@ void RobotModel::number_variables() {
 void RobotModel::attach(std::string_view link, std::shared_ptr<const SphereTree> tree) {
   const int index = require_link(link);
   if (!tree) throw Error("link " + std::string(link), "the tree to attach is null");
-  internal::require_content(tree->node_count() > 0, "SphereTree");
   links_[static_cast<std::size_t>(index)].trees.push_back(std::move(tree));
 }
 

@@ -18,7 +18,6 @@
 // assert(robot.variable_count() == 2 && robot.find_link("hand") == 2);
 // @endcode
 
-#include "base/moved_from.h"
 #include "collide/solids/primitive.h"
 #include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
@@ -138,10 +137,7 @@ class RobotModel {
   int require_link(std::string_view name) const;
 
   // For checkers: what they compute from the robot. Copies of a model share it.
-  internal::CheckCache& check_cache() const {
-    internal::require_content(check_cache_ != nullptr, "RobotModel");
-    return *check_cache_;
-  }
+  internal::CheckCache& check_cache() const { return *check_cache_; }
 
  private:
   int insert(std::string name, std::string_view parent_link, Joint joint);

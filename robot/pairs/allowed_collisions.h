@@ -80,9 +80,8 @@ class AllowedCollisions {
   // Tests them again. Throws Error as allow() does, and for a link and itself.
   void forbid(std::string_view first, std::string_view second);
 
-  // Indices of links, in range. An object that was moved from has no links, and allows nothing.
+  // Indices of links, in range.
   bool allows(int first, int second) const noexcept {
-    if (names_.empty()) return false;
     const std::size_t i = index(first, second);
     return (bits_[i / 64] >> (i % 64) & 1U) != 0;
   }

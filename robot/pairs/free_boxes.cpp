@@ -2,7 +2,6 @@
 #include "robot/pairs/free_boxes.h"
 
 #include "base/error.h"
-#include "base/moved_from.h"
 
 #include <algorithm>
 #include <cmath>
@@ -191,7 +190,6 @@ bool FreeBoxes::edge_is_free(std::size_t index, const Values& from, const Values
 void FreeBoxes::for_each_leaf(
     const std::function<void(bool is_free, std::span<const double> lower,
                              std::span<const double> upper)>& visit) const {
-  internal::require_content(!nodes_.empty(), "FreeBoxes");
   Values lower{};
   Values upper{};
   for (std::size_t i = 0; i < variables_.size(); ++i) {

@@ -37,8 +37,7 @@ namespace spherule {
 // Whoever makes it proves every configuration within kMargin of a free leaf in each of its
 // variables; the margin is what the arithmetic of the queries and of points on edges may take. A
 // configuration within kTolerance of a free leaf counts as in it, so that points of an edge that is
-// free are free themselves, whichever way they are rounded. Where the content was moved to another
-// object, nothing is proved.
+// free are free themselves, whichever way they are rounded.
 class FreeBoxes {
  public:
   // With |position| <= kLargestPosition = 100 at both ends of an edge and u = 2^-53, a point (1 -

@@ -280,9 +280,9 @@ constexpr int kSteps = 200;
 constexpr double kShrink = 0.9;         // by which a step has to reduce the gap
 constexpr double kSmallestStep = 1e-5;  // of the ranges
 
-class Search {
+class WitnessSearch {
  public:
-  Search(const PairSpace& space, std::uint64_t seed)
+  WitnessSearch(const PairSpace& space, std::uint64_t seed)
       : space_(space),
         bits_(seed),
         configuration_(static_cast<std::size_t>(space.robot->variable_count()), 0.0) {}
@@ -386,7 +386,7 @@ class Search {
 }  // namespace
 
 PairWitness find_witness(const PairSpace& space, std::size_t samples, std::uint64_t seed) {
-  return Search(space, seed).run(samples);
+  return WitnessSearch(space, seed).run(samples);
 }
 
 }  // namespace spherule::internal

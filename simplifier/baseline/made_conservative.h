@@ -16,7 +16,7 @@
 
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 
 #include <span>
 #include <vector>

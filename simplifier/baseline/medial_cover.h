@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/simplifier/baseline/medial_cover.h>
-// #include <spherule/simplifier/types/certificate.h>
+// #include <spherule/simplifier/simplify.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -18,8 +18,6 @@
 // @endcode
 
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
 
 namespace spherule {
 

@@ -15,7 +15,7 @@
 // @endcode
 
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 
 #include <cstddef>
 

@@ -16,8 +16,7 @@
 
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "geometry/mesh_distance.h"
-#include "simplifier/simplify.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/types/certificate.h"
 #include "simplifier/types/cover.h"
 #include "simplifier/types/external_spheres.h"
 #include "simplifier/types/levels.h"
+#include "simplifier/types/simplification.h"
 
 #include <cstddef>
 #include <span>

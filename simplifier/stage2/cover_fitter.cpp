@@ -402,7 +402,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kStarts = 10000;        // of candidates, in all
 constexpr std::size_t kStartsPerSphere = 24;  // at most
-constexpr std::uint64_t kWork = 50;           // of a search: visits per entry of the problem
+constexpr std::uint64_t kLevelWork = 50;      // of a search: visits per entry of the problem
 
 // What is kept off E for rounding: of clearances (32 u of the largest coordinate, SphereHierarchy),
 // of enclosures, and SphereLevel::kReserve of a radius, which is below twice the box's extent.
@@ -486,7 +486,7 @@ void LevelFitter::improve(Columns& solution) {
     const std::size_t target = solution.size() - std::min(step, solution.size() - 1);
     const std::atomic<bool> unneeded{false};
     CoverSearch search(problem_.instance().columns.size(), problem_.columns_of(), all, tried);
-    const bool covers = search.reach(target, kWork * problem_.entries(), ++seed, unneeded);
+    const bool covers = search.reach(target, kLevelWork * problem_.entries(), ++seed, unneeded);
     tried.assign(search.best_columns().begin(), search.best_columns().end());
     if (covers) {
       spread(clearance_, problem_, tried);

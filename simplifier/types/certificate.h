@@ -4,7 +4,7 @@
 // Bounds of a length.
 //
 // @code{.cpp}
-// #include <spherule/simplifier/types/certificate.h>
+// #include <spherule/simplifier/simplify.h>
 // #include <cassert>
 //
 // const spherule::Bounds depth{.lower = 0.1, .upper = 0.2};
@@ -112,16 +112,5 @@ struct Certificate {
   std::size_t pieces = 0;  // surface pieces examined
   std::size_t cells = 0;   // cells of space examined
 };
-
-// Certifies any set of spheres against a mesh, ours or not (docs/guarantee.md, G1 and G2).
-// Independent of how the spheres were found. Throws Error for a mesh that validate() refuses, for
-// spheres that are not usable or reach more than 2^24 times as far from the origin as mesh and S,
-// for external spheres that stage 1 cannot have made, and for options out of range; an empty set of
-// spheres is certified (as covering nothing).
-Certificate certify(const TriangleMesh& mesh, std::span<const Sphere> spheres,
-                    const CertifyOptions& options = {});
-
-// The part of a certificate that is stored beside the spheres.
-CertificateRecord record(const Certificate& certificate);
 
 }  // namespace spherule

@@ -4,8 +4,7 @@
 // Stage 2: covers the simplified solid with few spheres.
 //
 // @code{.cpp}
-// #include <spherule/simplifier/types/cover.h>
-// #include <spherule/simplifier/types/certificate.h>
+// #include <spherule/simplifier/simplify.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -113,21 +112,5 @@ struct SphereCover {
   // kPaper, and a Stage2Method that packs: seeds that had to be moved before a sphere fitted.
   std::size_t seeds_rejected = 0;
 };
-
-// Stage 2: covers S with spheres that protrude from it by at most E. kPaper is the second loop of
-// Algorithm 1 of the paper that simplify.h names; kCover a set cover, greedy at first, then by
-// row-weighting local search (Gao, Weise and Li, EJOR 246, 2015); see docs/covering.md. On return
-// the union of the spheres contains S: the search ends only with what an octree over S has proved;
-// certify() proves it again, by a search of its own.
-// Every sphere's radius is at most E plus the distance of its centre, a point of S (up to rounding,
-// for which a reserve is kept), to the outside of S, and at most a zone's error plus that distance
-// where the sphere reaches into that zone, unless min_radius is larger; where external spheres
-// close S by a hair and no point of S is found, a sphere of 0.02 E may stand, and certify() says
-// how far it protrudes. Deterministic for equal input and options on any number of threads, unless
-// `seconds` is set or a stop is requested. Throws Error for a mesh that validate() refuses, for
-// external spheres that stage 1 cannot have made, for options out of range, and for an E too small
-// for the rounding of the coordinates.
-SphereCover cover(const TriangleMesh& mesh, const ExternalSpheres& external,
-                  const CoverOptions& options);
 
 }  // namespace spherule

@@ -4,7 +4,7 @@
 // Stage 1: the spheres outside of a mesh that define its simplified solid S.
 //
 // @code{.cpp}
-// #include <spherule/simplifier/types/external_spheres.h>
+// #include <spherule/simplifier/simplify.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -106,13 +106,5 @@ struct ExternalSpheres {
   // What keep_concave_edges added.
   std::vector<Zone> concave_edges;
 };
-
-// Stage 1 (section II and Algorithm 1 of the paper that simplify.h names; docs/covering.md).
-// Deterministic for an equal mesh and equal options, on any number of threads.
-// Throws Error for a mesh that validate() refuses and for options out of range (D must be
-// finite and at least 1e-60 unless nothing is placed, padding finite and not negative, the grid not
-// finer than the resolution of the coordinates or 2^20 steps, zones usable and their values not
-// above D and E, and a smaller D only for the reachable placement).
-ExternalSpheres place_external_spheres(const TriangleMesh& mesh, const ExternalOptions& options);
 
 }  // namespace spherule

@@ -4,7 +4,7 @@
 // Levels of detail: coarser covers that enclose a finer one.
 //
 // @code{.cpp}
-// #include <spherule/simplifier/types/levels.h>
+// #include <spherule/simplifier/simplify.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
@@ -44,27 +44,5 @@ struct CoverLevel {
   double clustering_protrusion = 0.0;
   std::size_t clustering_count = 0;
 };
-
-// Levels of detail above the cover `spheres`, for the errors given, all larger than that of the
-// cover: the finest first, each made for the one before it. A level is a set cover whose rows are
-// the finer spheres: a sphere about c of radius at most E + the clearance of c must hold each finer
-// sphere that is its child whole. That has a solution, since a finer sphere is such a sphere
-// itself. So every level covers what the cover covers, protrudes from S by at most its E (unless
-// min_radius forces more, or the cover itself protrudes by more), and each of its spheres encloses
-// its children in exact arithmetic, with the reserve of SphereLevel. Spheres are shrunk to what
-// their children need. Uses seed, effort (at most the default where `seconds` is set), min_radius,
-// threads and progress of the options. Deterministic. Throws Error for a mesh that validate()
-// refuses, spheres that are not usable (external ones that stage 1 cannot have made) and errors
-// that check_levels() refuses. Zones do not bind levels above the cover.
-std::vector<CoverLevel> fit_levels(const TriangleMesh& mesh, const ExternalSpheres& external,
-                                   std::span<const Sphere> spheres,
-                                   std::span<const double> max_errors, const CoverOptions& options);
-
-// The errors sorted, the finest first. Throws Error unless they are positive and finite and each is
-// at least 1 % larger than the next finer one: below that rounding could decide.
-std::vector<double> check_levels(std::span<const double> max_errors);
-
-// The tree over the cover in which the spheres of the levels stand.
-LevelTree level_tree(std::span<const Sphere> spheres, std::span<const CoverLevel> levels);
 
 }  // namespace spherule

@@ -5,7 +5,6 @@
 // docs/guarantee.md.
 //
 // @code{.cpp}
-// #include <spherule/simplifier/types/simplification.h>
 // #include <spherule/simplifier/simplify.h>
 // #include <cassert>
 //
@@ -17,15 +16,12 @@
 // assert(spherule::sphere_file(fit).spheres.size() == fit.cover.spheres.size());
 // @endcode
 
-#include "io/sphere_file.h"
 #include "simplifier/types/certificate.h"
 #include "simplifier/types/cover.h"
 #include "simplifier/types/external_spheres.h"
 #include "simplifier/types/levels.h"
 #include "simplifier/types/simplify_options.h"
-#include "spheretree/sphere_tree.h"
 
-#include <string>
 #include <vector>
 
 namespace spherule {
@@ -53,15 +49,12 @@ struct Simplification {
   SimplifyTimes times;
 };
 
-// What was promised and is not proved, as a sentence: that the spheres cover, and, where no least
-// radius was requested, that they protrude from the simplified solid by at most E, in a zone by at
-// most its own, and the spheres of a level by at most that of the level. Empty where all is proved.
-std::string broken_promises(const Simplification& simplification);
-
-// The tree over the spheres: through the levels, where some were fitted, else that of build_tree().
-SphereTree sphere_tree(const Simplification& simplification);
-
-// Spheres, certificate and options in one, ready for save_spheres().
-SphereFile sphere_file(const Simplification& simplification, double scale = 1.0);
+// S, as stage 1 of simplify() makes it.
+struct SimplifiedSolid {
+  ExternalSpheres external;
+  SimplifyOptions options;  // as used, the defaults filled in
+  // D was to be chosen, and is more than 4 E (SimplifyOptions::min_external_diameter).
+  bool larger_diameter = false;
+};
 
 }  // namespace spherule

@@ -82,19 +82,4 @@ struct SimplifyOptions {
   std::stop_token stop = {};                        // CoverOptions::stop, of the levels, too
 };
 
-// Fills in E and D where they are 0, for this mesh: 1 % of its box diagonal, and 4 E. Stage 1 may
-// choose more than that for D (simplified_solid()).
-void complete_lengths(SimplifyOptions& options, const TriangleMesh& mesh);
-
-// D for a tool that is a union of spheres: the diameter of the smallest. If all of them are free of
-// M at a place to which the tool gets from outside, they are external spheres themselves, so that
-// it does not meet S either (docs/guarantee.md: it has to get there with room to spare all around,
-// 1.74 of ExternalSpheres::grid_step). Throws Error with the subject
-// "tool" if there is no sphere, one is not usable, or has the radius 0.
-double tool_diameter(std::span<const Sphere> tool);
-
-// The options with which simplify() runs stage 1, for an audit that runs it again. Where E is not
-// known (0), D / 4 takes its place: the natural ratio.
-ExternalOptions external_options(const SimplifyOptions& options);
-
 }  // namespace spherule

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/search/cover_search.h"
 
-#include "simplifier/types/cover.h"
+#include "simplifier/simplify.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A search that is told to stop ends with what it has proved.
-#include "simplifier/types/cover.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/zoo.h"
 

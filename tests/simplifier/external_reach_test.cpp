@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // External spheres are where a tool of the least diameter can get, and nowhere else.
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

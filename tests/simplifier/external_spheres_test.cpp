@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 
 #include "base/error.h"
 #include "geometry/mesh_distance.h"

@@ -6,9 +6,6 @@
 
 #include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
 #include "tests/support/effort.h"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is said of the spheres that may cover a solid, held against many of them taken at random.
 #include "simplifier/stage2/bound/cover_bound.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/zoo.h"
 

@@ -7,7 +7,7 @@
 
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Geometry>

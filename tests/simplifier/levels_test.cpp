@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/types/levels.h"
+#include "simplifier/simplify.h"
 
 #include "base/error.h"
-#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"

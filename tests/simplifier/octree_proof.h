@@ -6,7 +6,7 @@
 // intersects, in long double with an explicit error. Slow and short.
 
 #include "geometry/sphere.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // G2: nothing protrudes by more than E, whatever external spheres there are.
-#include "simplifier/types/cover.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

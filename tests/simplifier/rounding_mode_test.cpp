@@ -2,9 +2,7 @@
 #include "tests/support/rounding_mode.h"
 
 #include "simplifier/repair.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>

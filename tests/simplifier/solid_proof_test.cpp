@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What bounds the proof of S, G1, has to take from external spheres: cells are few where spheres
 // end close to a curved surface.
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large spheres that stand for the finest cells beside flat and convex surfaces.
 #include "simplifier/stage1/flood_refinement.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/sphere_hash.h"
 #include "tests/support/effort.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simplifier/stage2/cover_problem.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>

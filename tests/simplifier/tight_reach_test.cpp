@@ -2,7 +2,7 @@
 // What is wider than D by the closing slack is open: chambers behind ways whose width is known, and
 // places among random blocks to which a finer flood of exact distances gets.
 #include "base/error.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fine_flood.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

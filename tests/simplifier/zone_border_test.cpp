@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ways into zones of a smaller D: none is lost, and where a zone ends at D / 2 from a surface, so
 // that spheres of D just do not get in, the search for the way ends.
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "simplifier/types/zones.h"
 #include "tests/simplifier/fine_flood.h"
 #include "tests/simplifier/judge.h"

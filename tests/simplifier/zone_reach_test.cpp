@@ -2,7 +2,7 @@
 // Zones of their own D: what gets in where, and that nothing ever intersects the mesh.
 #include "base/error.h"
 #include "simplifier/concave_edges.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

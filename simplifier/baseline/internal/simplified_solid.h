@@ -3,11 +3,10 @@
 
 #include "geometry/mesh_distance.h"
 #include "geometry/triangle_mesh.h"
+#include "simplifier/simplify.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_problem.h"
 #include "simplifier/stage2/solid_cells.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
 
 #include <Eigen/Core>
 

@@ -212,7 +212,6 @@ constexpr double kAhead = 2.0;  // of the step at which another contact is searc
 constexpr std::size_t kTasks = 512;
 constexpr std::size_t kPart = 8;  // tasks in sequence
 // Far above the rounding of sums of weights, below what matters.
-constexpr double kRounding = 1e-9;
 
 // D(q + d) <= value + slope.d + excess for every d no longer than the half diagonal of the cell at
 // q.

@@ -3,7 +3,7 @@
 
 #include "geometry/mesh_distance.h"
 #include "geometry/mesh_report.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "geometry/mesh_distance.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 #include "spheretree/check.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"

@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "simplifier/simplify.h"
-#include "simplifier/types/certificate.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -2,7 +2,7 @@
 #include "simplifier/baseline/voxelisation.h"
 
 #include "base/error.h"
-#include "simplifier/types/certificate.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/baseline/cover_check.h"
 #include "tests/simplifier/baseline/exact_cube.h"
 #include "tests/simplifier/judge.h"
