@@ -16,12 +16,10 @@ get_target_property(library_type spherule_spheretree TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
   set(SPHERULE_MESH_IO_PACKAGES "EXPAT;tinyxml2;ZLIB")
   set(SPHERULE_SIMPLIFIER_PACKAGES "TBB")
-  set(SPHERULE_BASELINES_PACKAGES "meshoptimizer;Qhull")
   set(SPHERULE_ROBOT_PACKAGES "Threads;tinyxml2;yaml-cpp")
 else()
   set(SPHERULE_MESH_IO_PACKAGES "")
   set(SPHERULE_SIMPLIFIER_PACKAGES "")
-  set(SPHERULE_BASELINES_PACKAGES "")
   set(SPHERULE_ROBOT_PACKAGES "")
 endif()
 
@@ -35,7 +33,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/spheruleConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/spheruleConfig.cmake
               ${PROJECT_BINARY_DIR}/spheruleConfigVersion.cmake
         DESTINATION ${destination})
-if(SPHERULE_OMPL)
+if(TARGET spherule_ompl)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/SpheruleOmpl.cmake DESTINATION ${destination})
 endif()
 

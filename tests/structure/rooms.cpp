@@ -8,9 +8,9 @@ namespace spherule {
 namespace {
 
 // Rooms that belong to one library: each library has the folder of its CMakeLists.txt.
-constexpr std::string_view kLibraryFolders[] = {
-    "spheretree",     "mesh",    "mesh/io", "simplifier",   "simplifier/baseline",
-    "simplifier/cad", "collide", "robot",   "adapters/fcl", "adapters/ompl"};
+constexpr std::string_view kLibraryFolders[] = {"spheretree", "mesh",           "mesh/io",
+                                                "simplifier", "simplifier/cad", "collide",
+                                                "robot",      "adapters/fcl",   "adapters/ompl"};
 
 Names joined(std::initializer_list<Names> lists) {
   Names all;
@@ -33,13 +33,12 @@ const std::vector<Room>& rooms() {
                "collide/meshes", "collide/kernels"}});
   static const Names kRobot = {"robot/model", "robot/files", "robot/formats",
                                "robot/pairs", "robot/cover", "robot/check"};
-  static const Names kPublic =
-      joined({{"spheretree", "mesh", "mesh/io", "simplifier", "collide"},
-              kRobot,
-              {"simplifier/baseline", "simplifier/cad", "adapters/fcl", "adapters/ompl"}});
+  static const Names kPublic = joined({{"spheretree", "mesh", "mesh/io", "simplifier", "collide"},
+                                       kRobot,
+                                       {"simplifier/cad", "adapters/fcl", "adapters/ompl"}});
   static const Names kCli = joined({kPublic, {"spheretree/text"}});
   static const Names kAll =
-      joined({kPublic, kSimplifier, kCollide, {"spheretree/text", "mesh/parsing", "bench"}});
+      joined({kPublic, kSimplifier, kCollide, {"spheretree/text", "mesh/parsing"}});
   static const std::vector<Room> kRooms = {
       {"spheretree", {"spheretree/text"}, {"Eigen"}, {{"nlohmann", "io/sphere_file.cpp"}}},
       {"spheretree/text", {}, {}, {}, true},
@@ -100,14 +99,6 @@ const std::vector<Room>& rooms() {
        {"Eigen", "tbb"},
        {},
        true},
-      {"simplifier/baseline",
-       kSimplifier,
-       {"Eigen", "tbb"},
-       {{"meshoptimizer", "simplifier/baseline/decimation.cpp"},
-        {"openvdb", "simplifier/baseline/level_set_packing.cpp"},
-        {"qhull", "simplifier/baseline/convex_hull.cpp"},
-        {"qhull", "simplifier/baseline/internal/voronoi.cpp"},
-        {"bullet", "simplifier/baseline/convex_decomposition.cpp"}}},
       {"simplifier/cad",
        joined({kSimplifier, {"mesh/parsing"}}),
        {"Eigen"},
@@ -186,7 +177,10 @@ const std::vector<Room>& rooms() {
                 "cli/parts"}}),
        {"Eigen", "CLI", "nlohmann"}},
       {"python", kPublic, {"Eigen", "pybind11"}},
-      {"bench", kAll, {"Eigen", "benchmark", "fcl", "ccd", "bullet", "nlohmann", "ompl"}},
+      {"bench",
+       joined({kAll, {"bench", "tests"}}),
+       {"Eigen", "CLI", "benchmark", "bullet", "ccd", "fcl", "gmock", "gtest", "meshoptimizer",
+        "nlohmann", "ompl", "openvdb", "qhull", "tbb"}},
       {"tests",
        joined({kAll, {"cli/cad"}}),
        {"Eigen", "gtest", "gmock", "fcl", "ccd", "boost", "gmp", "kdl", "nlohmann", "ompl", "tbb",

@@ -82,7 +82,6 @@ std::string check_own_include(const Room& room, std::string_view target) {
   }
   const std::string_view library = library_of(target);
   const bool sees_internals = room.folder == "tests" || room.folder == "bench" ||
-                              room.folder == "simplifier/baseline" ||
                               room.folder == "simplifier/cad" || room.folder == "python";
   if (library != library_of(room.folder) && target.find("/internal/") != std::string_view::npos &&
       !sees_internals) {
