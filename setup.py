@@ -37,10 +37,6 @@ class BuildByCMake(build_ext):
             "-DCMAKE_BUILD_TYPE=Release",
             f"-DPython_EXECUTABLE={sys.executable}",
             "-DSPHERULE_PYTHON=ON",
-            "-DSPHERULE_TESTS=OFF",
-            "-DSPHERULE_BENCH=OFF",
-            "-DSPHERULE_FCL=OFF",
-            "-DSPHERULE_OMPL=OFF",
             "-DSPHERULE_PRECOMPILE=ON",
             *shlex.split(os.environ.get("CMAKE_ARGS", "")),
         ]

@@ -11,12 +11,19 @@ need_build_tools() {
   command -v ninja >/dev/null || command -v make >/dev/null || packages+=(ninja-build)
 }
 
-# Libraries and command without the adapters. Boost is for OpenVDB's headers.
+# Libraries without the adapters and without CAD files.
 need_libraries() {
-  packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
-    libcli11-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev libqhull-dev
-    libtinyxml2-dev libyaml-cpp-dev libjs-three libocct-data-exchange-dev
-    libocct-modeling-algorithms-dev)
+  packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev libtinyxml2-dev
+    libyaml-cpp-dev)
+}
+
+# The command, which draws with three.js. STEP and IGES are read by OpenCASCADE.
+need_command() {
+  need_libraries
+  packages+=(libcli11-dev libjs-three)
+}
+need_cad() {
+  packages+=(libocct-data-exchange-dev libocct-modeling-algorithms-dev)
 }
 
 # OMPL's CMake package names three libraries of Boost that its Debian package does not depend on.
@@ -25,10 +32,10 @@ need_adapters() {
     libboost-system-dev)
 }
 
-# Bullet is a peer of the benchmarks; its verdicts are tested. Assimp, KDL and urdfdom are oracles.
+# Assimp, KDL and urdfdom are oracles.
 need_tests() {
-  packages+=(libassimp-dev libgtest-dev libgmp-dev libmpfr-dev liborocos-kdl-dev liburdfdom-dev
-    libbullet-dev)
+  packages+=(libassimp-dev libgtest-dev libboost-dev libgmp-dev libmpfr-dev liborocos-kdl-dev
+    liburdfdom-dev)
 }
 
 # The sanitized build is clang's.
@@ -52,8 +59,19 @@ need_python_tests() {
   packages+=(python3-pytest mypy python3-distributed python3-matplotlib)
 }
 
+# The first table of bench/run: the engines that spherule is compared with.
+need_bench_table() {
+  need_libraries
+  packages+=(libfcl-dev libccd-dev libbullet-dev)
+}
+
+# All of bench/. Boost is for OpenVDB's headers.
 need_benchmarks() {
-  packages+=(libbenchmark-dev libbullet-dev)
+  need_bench_table
+  need_command
+  need_adapters
+  packages+=(libbenchmark-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev
+    libqhull-dev)
 }
 
 # Selects Ninja and ccache for CMake, if they are installed. CMake reads both variables only when a build

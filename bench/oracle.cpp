@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/oracle.h"
 
-#include "bench/checkers/fcl_solid.h"
 #include "robot/model/kinematics.h"
+#include "tests/support/fcl_solid.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/placed_cell.h"
 
-#include "bench/scenes/solids.h"
+#include "io/mesh_io.h"
+#include "io/sphere_file.h"
 #include "robot/model/kinematics.h"
+#include "tests/support/solids.h"
 
 namespace spherule {
 namespace {
@@ -29,6 +31,17 @@ std::map<std::string, PlacedParts> place_cell(const Workload& workload,
     add(obstacle.part, obstacle.world_from_part, groups[obstacle.part.name]);
   }
   return groups;
+}
+
+void write_scene(const Workload& workload, const ArmPositions& configuration,
+                 const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const auto& [name, group] : place_cell(workload, configuration)) {
+    write_stl(group.mesh, folder / (name + ".stl"));
+    SphereFile file;
+    file.spheres = group.spheres;
+    save_spheres(file, folder / (name + ".spheres.json"));
+  }
 }
 
 }  // namespace spherule

@@ -4,6 +4,7 @@
 #include "bench/workload.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -22,5 +23,9 @@ struct PlacedParts {
 // The cell in one configuration: robot, torch, workpiece and table, by these names.
 std::map<std::string, PlacedParts> place_cell(const Workload& workload,
                                               const ArmPositions& configuration);
+
+// The same for `spherule view`: FOLDER/PART.stl and FOLDER/PART.spheres.json. Throws Error.
+void write_scene(const Workload& workload, const ArmPositions& configuration,
+                 const std::filesystem::path& folder);
 
 }  // namespace spherule

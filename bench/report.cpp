@@ -3,13 +3,9 @@
 
 #include "base/files.h"
 #include "bench/methods.h"
-#include "bench/studies/report.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 #include <utility>
 
 namespace spherule {
@@ -36,6 +32,7 @@ Json to_json(const WorkloadResult& result, const MethodResult& method) {
             {"shuffled_ns_per_query", m.shuffled_ns_per_query},
             {"p50_ns", m.p50_ns},
             {"p99_ns", m.p99_ns},
+            {"percentiles_ns", m.percentiles_ns},
             {"collisions", method.count.collisions},
             {"missed", method.count.missed},
             {"extra", method.count.extra},
@@ -73,36 +70,8 @@ Json to_json(const WorkloadResult& result) {
                    {"unknown", edges.unknown},     {"unknown_but_free", edges.unknown_but_free},
                    {"median_ns", edges.median_ns}, {"p95_ns", edges.p95_ns},
                    {"p99_ns", edges.p99_ns}};
-  json["studies"] = to_json(result.studies);
+  json["studies"] = result.studies;
   return json;
-}
-
-std::string plot_name(const std::string& workload, const char* what) {
-  return workload + "-" + what + ".dat";
-}
-
-// Columns for bench/plots: quoted names first.
-void write_plot_data(const WorkloadResult& result, const std::filesystem::path& folder) {
-  std::ostringstream ratios;
-  std::ostringstream percentiles;
-  std::ostringstream spheres;
-  ratios << "# method, times faster than " << kUsualFcl << ", ns per query\n";
-  for (const MethodResult& method : result.methods) {
-    ratios << '"' << method.name << "\" "
-           << time_of(result, kUsualFcl) / method.measurement.ns_per_query << ' '
-           << method.measurement.ns_per_query << '\n';
-    if (percentiles.tellp() > 0) percentiles << "\n\n";  // gnuplot's mark of a new data set
-    percentiles << '"' << method.name << "\"\n";
-    for (std::size_t i = 0; i < method.measurement.percentiles_ns.size(); ++i) {
-      percentiles << method.measurement.percentiles_ns[i] << ' ' << i << '\n';
-    }
-  }
-  for (const FitRecord& fit : result.fits) {
-    spheres << '"' << fit.part << "\" " << fit.triangles << ' ' << fit.spheres << '\n';
-  }
-  write_file_atomically(folder / plot_name(result.name, "ratios"), ratios.str());
-  write_file_atomically(folder / plot_name(result.name, "percentiles"), percentiles.str());
-  write_file_atomically(folder / plot_name(result.name, "spheres"), spheres.str());
 }
 
 }  // namespace
@@ -188,7 +157,7 @@ void print_table(const WorkloadResult& result) {
       edges.free, edges.collision, edges.unknown, edges.unknown_but_free, edges.median_ns,
       edges.p95_ns, edges.p99_ns, edges.median_ns / single, edges.p95_ns / single,
       edges.p99_ns / single);
-  print_tables(result.studies);
+  std::fflush(stdout);
 }
 
 void write_results(const std::vector<WorkloadResult>& results,
@@ -196,8 +165,6 @@ void write_results(const std::vector<WorkloadResult>& results,
   Json json{{"workloads", Json::array()}};
   for (const WorkloadResult& result : results) {
     json["workloads"].push_back(to_json(result));
-    write_plot_data(result, folder);
-    write_plot_data(result.studies, result.name, folder);
   }
   write_file_atomically(folder / "results.json", json.dump(1) + "\n");
 }

@@ -4,8 +4,9 @@
 #include "bench/edges.h"
 #include "bench/fit_parts.h"
 #include "bench/measure.h"
-#include "bench/studies/study.h"
 #include "bench/workload.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -31,7 +32,8 @@ struct WorkloadResult {
   std::vector<FitRecord> fits;
   std::vector<MethodResult> methods;
   EdgeMeasurement edges = {};
-  Studies studies = {};
+  // The rows of the studies by name (studies/study.h).
+  nlohmann::ordered_json studies = {};
 };
 
 // Compares with the oracle and picks fcl-mesh-fastest.
@@ -41,8 +43,7 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
 
 void print_table(const WorkloadResult& result);
 
-// results.json, and for the plots a file a workload of ratios, percentiles and spheres, and those
-// of the studies. Throws Error.
+// results.json, of which bench/plot draws. Throws Error.
 void write_results(const std::vector<WorkloadResult>& results, const std::filesystem::path& folder);
 
 }  // namespace spherule

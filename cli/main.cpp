@@ -45,15 +45,12 @@ int run(int argc, char** argv) {
   add_check_srdf(app, exit_code);
   add_check(app, exit_code);
 #endif
-#ifdef SPHERULE_HAS_BASELINES
-  add_baseline(app, exit_code);
-#endif
   add_help(app, exit_code);
   add_completion(app, exit_code);
   add_manual(app, exit_code);
   app.footer(to_text(
       {.text = "`spherule COMMAND --help` lists the options of a command, with examples.",
-       .exit_codes = "0 done; 1 not proved to cover (fit, robot, baseline), a leak or not proved "
+       .exit_codes = "0 done; 1 not proved to cover (fit, robot), a leak or not proved "
                      "(audit, audit-robot), pairs that touch or are not proved apart (check-srdf), "
                      "a collision (collide), a collision or not proved (check)",
        .examples = {"spherule fit part.stl -o part.json --max-error 1",

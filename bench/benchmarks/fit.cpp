@@ -4,11 +4,11 @@
 // the certificate holds.
 
 #include "bench/scenes/robot.h"
-#include "bench/scenes/shapes.h"
-#include "bench/scenes/solids.h"
 #include "bench/scenes/torch.h"
 #include "bench/scenes/workpiece.h"
 #include "simplifier/simplify.h"
+#include "tests/support/shapes.h"
+#include "tests/support/solids.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,7 +2,7 @@
 #include "bench/checkers/fcl_mesh_checker.h"
 
 #include "bench/checkers/fcl_meshes.h"
-#include "bench/checkers/fcl_models.h"
+#include "tests/support/fcl_models.h"
 
 #include <memory>
 #include <utility>

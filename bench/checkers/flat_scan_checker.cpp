@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "bench/checkers/flat_scan/kernel.h"
 #include "bench/checkers/scene_reach.h"
-#include "bench/scenes/turn_between.h"
+#include "tests/support/turn_between.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,11 +5,11 @@
 // without any, of those of SPHERULE_MODELS, whose spheres are fitted here, at D and at D + slack.
 #include "base/error.h"
 #include "bench/closing/protrusion_judge.h"
-#include "bench/program.h"
 #include "geometry/sphere.h"
 #include "io/mesh_io.h"
 #include "io/sphere_file.h"
 #include "simplifier/simplify.h"
+#include "tests/support/program.h"
 
 #include <Eigen/Geometry>
 

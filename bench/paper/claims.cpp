@@ -2,10 +2,10 @@
 #include "bench/paper/claims.h"
 
 #include "bench/fit_parts.h"
-#include "bench/scenes/shapes.h"
 #include "bench/studies/study.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
+#include "tests/support/shapes.h"
 
 #include <cstdio>
 #include <memory>

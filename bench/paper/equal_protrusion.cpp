@@ -2,11 +2,11 @@
 #include "bench/paper/equal_protrusion.h"
 
 #include "base/error.h"
+#include "bench/baseline/made_conservative.h"
 #include "bench/paper/figures.h"
-#include "bench/scenes/shapes.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"
-#include "simplifier/baseline/made_conservative.h"
+#include "tests/support/shapes.h"
 
 #include <algorithm>
 #include <chrono>

@@ -2,10 +2,10 @@
 #include "bench/paper/fcl_convex_checker.h"
 
 #include "base/error.h"
-#include "bench/checkers/fcl_models.h"
-#include "bench/scenes/mesh_facts.h"
-#include "bench/scenes/solids.h"
-#include "simplifier/baseline/convex_hull.h"
+#include "bench/baseline/convex_hull.h"
+#include "tests/support/fcl_models.h"
+#include "tests/support/mesh_facts.h"
+#include "tests/support/solids.h"
 
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/math/bv/OBBRSS.h>

@@ -2,10 +2,10 @@
 #include "bench/paper/figure2.h"
 
 #include "base/error.h"
+#include "bench/baseline/sphere_packing.h"
 #include "bench/fit_parts.h"
-#include "bench/scenes/solids.h"
-#include "simplifier/baseline/sphere_packing.h"
 #include "simplifier/simplify.h"
+#include "tests/support/solids.h"
 
 #include <cstdio>
 #include <utility>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/figures.h"
 
+#include "bench/baseline/sphere_packing.h"
 #include "bench/paper/space_share.h"
-#include "bench/scenes/shapes.h"
-#include "simplifier/baseline/sphere_packing.h"
+#include "tests/support/shapes.h"
 
 #include <utility>
 

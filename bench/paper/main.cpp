@@ -2,10 +2,9 @@
 // The table and the figures of the paper, made again. See bench/README.md.
 #include "base/error.h"
 #include "bench/fit_parts.h"
-#include "bench/paper/page.h"
 #include "bench/paper/pictures.h"
 #include "bench/paper/report.h"
-#include "bench/program.h"
+#include "tests/support/program.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -81,7 +80,6 @@ int run(const std::filesystem::path& out) {
   results.table1 = make_table1(workload, make_representations(workload), {});
   print_table1(results.table1);
   write_paper(results, out);
-  write_page(results, out);
   for (const Table1Row& row : results.table1) {
     if (row.is_conservative && row.whole.count.missed > 0) {
       throw Error(row.method, std::to_string(row.whole.count.missed) + " collisions missed");

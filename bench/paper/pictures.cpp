@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/pictures.h"
 
+#include "bench/baseline/convex_hull.h"
+#include "bench/baseline/voxelisation.h"
 #include "bench/paper/picture.h"
 #include "bench/placed_cell.h"
-#include "bench/scenes/solids.h"
-#include "simplifier/baseline/convex_hull.h"
-#include "simplifier/baseline/voxelisation.h"
+#include "tests/support/solids.h"
 
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/paper/results.h"
+#include "bench/paper/report.h"
 #include "bench/workload.h"
 
 #include <filesystem>

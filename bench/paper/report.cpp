@@ -2,17 +2,52 @@
 #include "bench/paper/report.h"
 
 #include "base/files.h"
-#include "bench/paper/machine.h"
 
+#include <Eigen/Core>
+#include <fcl/config.h>
 #include <nlohmann/json.hpp>
 
-#include <sstream>
+#include <fstream>
 #include <string>
+#include <thread>
+#include <utility>
 
 namespace spherule {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const auto colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string compiler() {
+#ifdef __clang__
+  return __VERSION__;
+#else
+  return std::string("GCC ") + __VERSION__;
+#endif
+}
+
+// What a result depends on beside the code: processor, compiler, the versions of FCL and Eigen, and
+// those of the Debian packages that the file names, "NAME VERSION" a line, if it is there.
+Json machine_facts(const std::filesystem::path& packages) {
+  Json facts = {
+      {"processor", processor()},
+      {"cores", std::to_string(std::thread::hardware_concurrency())},
+      {"compiler", compiler()},
+      {"FCL", FCL_VERSION},
+      {"Eigen", std::to_string(EIGEN_WORLD_VERSION) + '.' + std::to_string(EIGEN_MAJOR_VERSION) +
+                    '.' + std::to_string(EIGEN_MINOR_VERSION)}};
+  std::ifstream file(packages);
+  for (std::string name, version; file >> name >> version;) facts[name] = version;
+  return facts;
+}
 
 Json to_json(const Table1Cells& cells) {
   return {{"queries", cells.queries},     {"collisions", cells.count.collisions},
@@ -116,66 +151,12 @@ Json list(const std::vector<Row>& rows) {
   return json;
 }
 
-std::string counts_csv(const std::vector<CountRow>& rows) {
-  std::ostringstream text;
-  text << "part,triangles,max_protrusion,method,spheres,protrusion,growth,setting,seconds\n";
-  for (const CountRow& row : rows) {
-    for (const CountEntry& entry : row.entries) {
-      text << '"' << row.part << "\"," << row.triangles << ',' << row.max_protrusion << ','
-           << entry.method << ',' << entry.spheres << ',' << entry.protrusion << ','
-           << entry.inflation << ',' << entry.setting << ',' << entry.seconds << '\n';
-    }
-  }
-  return text.str();
-}
-
-std::string table1_csv(const std::vector<Table1Row>& rows) {
-  std::ostringstream text;
-  text << "method,complexity,section,queries,collisions,missed,extra,seconds,ratio\n";
-  for (const Table1Row& row : rows) {
-    for (const bool is_critical : {false, true}) {
-      const Table1Cells& cells = is_critical ? row.critical : row.whole;
-      text << row.method << ',' << row.complexity << ',' << (is_critical ? "critical" : "whole")
-           << ',' << cells.queries << ',' << cells.count.collisions << ',' << cells.count.missed
-           << ',' << cells.count.extra << ',' << cells.seconds << ',' << cells.ratio << '\n';
-    }
-  }
-  return text.str();
-}
-
-// Blocks for gnuplot, one a method.
-std::string courses_data(const std::vector<FitCourse>& courses) {
-  std::ostringstream text;
-  for (const FitCourse& course : courses) {
-    if (&course != &courses.front()) text << "\n\n";
-    text << '"' << course.method << "\"\n";
-    for (const CoverHistoryEntry& entry : course.history) {
-      text << entry.sphere_count << ' ' << 1e3 * entry.surface_error_before << ' '
-           << 1e3 * entry.surface_error_after << ' ' << 100.0 * entry.coverage_before << ' '
-           << 100.0 * entry.coverage_after << ' ' << 100.0 * entry.excess_before << ' '
-           << 100.0 * entry.excess_after << '\n';
-    }
-  }
-  return text.str();
-}
-
-std::string figure_3_data(const std::vector<Figure3Row>& rows) {
-  std::ostringstream text;
-  for (const Figure3Row& row : rows) {
-    text << 1e3 * row.min_external_diameter << ' ' << 100.0 * row.reachable << ' '
-         << 100.0 * row.random << '\n';
-  }
-  return text.str();
-}
-
 }  // namespace
 
 void write_paper(const PaperResults& results, const std::filesystem::path& folder) {
-  Json machine = Json::object();
-  for (const auto& [name, value] : machine_facts(folder / "packages.txt")) machine[name] = value;
   using Entry = CoverHistoryEntry;
   const Json json = {
-      {"machine", std::move(machine)},
+      {"machine", machine_facts(folder / "packages.txt")},
       {"table1", list(results.table1)},
       {"figures",
        {{"2", to_json(results.figure_2)},
@@ -187,10 +168,6 @@ void write_paper(const PaperResults& results, const std::filesystem::path& folde
       {"counts", list(results.counts)},
       {"trees", list(results.trees)}};
   write_file_atomically(folder / "paper.json", json.dump(1) + "\n");
-  write_file_atomically(folder / "paper-table1.csv", table1_csv(results.table1));
-  write_file_atomically(folder / "paper-counts.csv", counts_csv(results.counts));
-  write_file_atomically(folder / "paper-figure3.dat", figure_3_data(results.figure_3));
-  write_file_atomically(folder / "paper-courses.dat", courses_data(results.courses));
 }
 
 }  // namespace spherule

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/paper/sphere_methods.h"
 
+#include "bench/baseline/hubbard_spheres.h"
+#include "bench/baseline/level_set_packing.h"
+#include "bench/baseline/medial_axis.h"
+#include "bench/baseline/octree_spheres.h"
+#include "bench/baseline/sphere_packing.h"
+#include "bench/baseline/voxelisation.h"
 #include "geometry/mesh_report.h"
-#include "simplifier/baseline/hubbard_spheres.h"
-#include "simplifier/baseline/level_set_packing.h"
-#include "simplifier/baseline/medial_axis.h"
-#include "simplifier/baseline/octree_spheres.h"
-#include "simplifier/baseline/sphere_packing.h"
-#include "simplifier/baseline/voxelisation.h"
 #include "simplifier/simplify.h"
 
 #include <algorithm>

@@ -2,16 +2,16 @@
 #include "bench/paper/trees.h"
 
 #include "base/error.h"
+#include "bench/baseline/hubbard_spheres.h"
+#include "bench/baseline/medial_axis.h"
+#include "bench/baseline/octree_spheres.h"
 #include "bench/clock.h"
 #include "bench/paper/figures.h"
-#include "bench/scenes/shapes.h"
 #include "bench/studies/random_numbers.h"
 #include "collide/collide.h"
-#include "simplifier/baseline/hubbard_spheres.h"
-#include "simplifier/baseline/medial_axis.h"
-#include "simplifier/baseline/octree_spheres.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
+#include "tests/support/shapes.h"
 
 #include <algorithm>
 #include <cstdint>

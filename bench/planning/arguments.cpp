@@ -2,7 +2,7 @@
 #include "bench/planning/arguments.h"
 
 #include "base/error.h"
-#include "bench/program.h"
+#include "tests/support/program.h"
 
 #include <ompl/util/Console.h>
 

@@ -14,9 +14,9 @@
 #include "bench/planning/planner.h"
 #include "bench/planning/planning_cell.h"
 #include "bench/planning/process_points.h"
-#include "bench/program.h"
 #include "bench/real_models.h"
 #include "bench/scenes/torch.h"
+#include "tests/support/program.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -5,9 +5,9 @@
 #include "bench/scenes/inverse_kinematics.h"
 #include "bench/scenes/program.h"
 #include "bench/scenes/spherical_wrist.h"
-#include "bench/scenes/turn_between.h"
 #include "bench/scenes/weld_pass.h"
 #include "robot/model/kinematics.h"
+#include "tests/support/turn_between.h"
 
 #include <Eigen/Geometry>
 

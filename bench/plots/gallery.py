@@ -58,9 +58,9 @@ class Gallery:
     def wanted(self, name):
         return self.arguments.only in name
 
-    def run(self, *words, codes=(0, 1)):
+    def run(self, *words, codes=(0, 1), program=None):
         """Runs the command, in the folder of the work; what it prints."""
-        done = subprocess.run([os.path.abspath(self.arguments.spherule), *map(str, words)],
+        done = subprocess.run([os.path.abspath(program or self.arguments.spherule), *map(str, words)],
                               cwd=self.work, capture_output=True, text=True)
         if done.returncode not in codes:
             sys.exit(f"bench/gallery: {' '.join(map(str, words))}\n{done.stderr}")
@@ -118,8 +118,8 @@ class Gallery:
 
     def part(self, name, title, mesh, count, notes):
         medial = self.work / f"{name}-medial.json"
-        made = json.loads(self.run("baseline", "medial", mesh, "--spheres", count, "-o", medial,
-                                   "--json"))
+        made = json.loads(self.run("medial", mesh, "--spheres", count, "-o", medial,
+                                   program=self.arguments.baseline))
         certificate = made["certificate"]
         size = self.diagonal(mesh)
 
@@ -262,7 +262,7 @@ def add_models(gallery, models):
 
 def main():
     parser = argparse.ArgumentParser()
-    for option in ("--spherule", "--cell-files", "--models", "--only", "--out"):
+    for option in ("--spherule", "--baseline", "--cell-files", "--models", "--only", "--out"):
         parser.add_argument(option, required=True)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -3,7 +3,7 @@
 // processor nanoseconds a configuration: of check_configs() and check_edges() of all, and of
 // check_config() of one at a time. Usage: python_twin FOLDER
 
-#include "bench/python/cell_files.h"
+#include "tests/python/cell_files.h"
 
 #include <algorithm>
 #include <cstdint>

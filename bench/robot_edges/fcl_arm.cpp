@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/fcl_arm.h"
 
-#include "bench/checkers/fcl_models.h"
-#include "bench/checkers/fcl_solid.h"
 #include "robot/model/kinematics.h"
+#include "tests/support/fcl_models.h"
+#include "tests/support/fcl_solid.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>

@@ -8,7 +8,6 @@
 //   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]
 
 #include "bench/clock.h"
-#include "bench/program.h"
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/counts.h"
@@ -19,6 +18,7 @@
 #include "bench/robot_edges/times.h"
 #include "bench/studies/random_numbers.h"
 #include "robot/check/robot_scene.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <cstdio>

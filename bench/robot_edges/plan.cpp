@@ -8,12 +8,12 @@
 
 #include "base/error.h"
 #include "bench/planning/problem_study.h"
-#include "bench/program.h"
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_problems.h"
 #include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/fcl_arm.h"
 #include "bench/robot_edges/robot_scenes.h"
+#include "tests/support/program.h"
 
 #include <cstdio>
 #include <ompl/util/Console.h>

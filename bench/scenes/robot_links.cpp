@@ -2,8 +2,8 @@
 // The links of make_robot() as solids. Each is drawn in its own frame, in metres; the boxes follow
 // those of the real robot's published visual meshes to some centimetres.
 #include "bench/scenes/robot.h"
-#include "bench/scenes/shapes.h"
-#include "bench/scenes/solids.h"
+#include "tests/support/shapes.h"
+#include "tests/support/solids.h"
 
 #include <numbers>
 #include <utility>
@@ -235,10 +235,7 @@ std::array<TriangleMesh, kJoints + 1> make_robot_links() {
   constexpr std::array<std::size_t, kJoints + 1> kCounts{776, 1758, 1190, 1494, 966, 324, 316};
   for (std::size_t i = 0; i < links.size(); ++i) {
     snap(links[i]);
-    if (getenv("SHOW"))
-      printf("%zu\n", links[i].triangles.size());
-    else
-      refine_to(links[i], kCounts[i]);
+    refine_to(links[i], kCounts[i]);
     snap(links[i]);
   }
   // A closed surface has an even number of triangles, 6,825 is odd. Exporters leave facets of zero

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/table.h"
 
-#include "bench/scenes/shapes.h"
-#include "bench/scenes/solids.h"
 #include "bench/scenes/workpiece.h"
+#include "tests/support/shapes.h"
+#include "tests/support/solids.h"
 
 namespace spherule {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/torch.h"
 
-#include "bench/scenes/shapes.h"
-#include "bench/scenes/solids.h"
+#include "tests/support/shapes.h"
+#include "tests/support/solids.h"
 
 #include <cmath>
 #include <numbers>

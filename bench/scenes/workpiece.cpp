@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/scenes/workpiece.h"
 
-#include "bench/scenes/solids.h"
+#include "tests/support/solids.h"
 
 #include <array>
 #include <cmath>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/fcl_solid.h"
 #include "bench/clock.h"
 #include "bench/studies/fcl_pair.h"
 #include "bench/studies/random_numbers.h"
 #include "bench/studies/study.h"
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"
+#include "tests/support/fcl_solid.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include "bench/studies/fcl_pair.h"
 
 #include "bench/checkers/fcl_meshes.h"
-#include "bench/checkers/fcl_models.h"
+#include "tests/support/fcl_models.h"
 
 #include <memory>
 

@@ -4,7 +4,6 @@
 #include "robot/pairs/link_pairs.h"
 
 #include "base/error.h"
-#include "bench/program.h"
 #include "collide/solids/solid_within.h"
 #include "robot/cover/false_alarms.h"
 #include "robot/cover/link_mesh.h"
@@ -13,6 +12,7 @@
 #include "robot/model/kinematics.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "spheretree/build.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <array>

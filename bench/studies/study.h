@@ -6,6 +6,8 @@
 
 #include "bench/workload.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -80,10 +82,10 @@ struct DistanceRow {
 std::vector<DistanceRow> study_distances(const Part& moving, const Part& standing,
                                          const StudyOptions& options);
 
-struct Studies {
-  std::vector<SizeRow> sizes = {};
-  std::vector<SmallRow> small_environments = {};
-  std::vector<DistanceRow> distances = {};
-};
+// All three, the last of torch and workpiece: prints their tables and returns what stands under
+// "studies" in results.json. Throws Error if spheres missed a collision.
+nlohmann::ordered_json run_studies(const Workload& workload,
+                                   const std::vector<std::uint32_t>& touching_bodies,
+                                   const StudyOptions& options);
 
 }  // namespace spherule

@@ -6,7 +6,6 @@
 #include "base/text.h"
 #include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
-#include "cli/modules/module.h"
 
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <sys/wait.h>
@@ -26,6 +26,13 @@ namespace {
 constexpr double kSeconds = 30.0;
 constexpr double kSecondsPerByte = 60.0 / 1e6;
 constexpr double kForAChordError = 10.0;
+
+// The reader stands where SPHERULE_MODULE_FOLDER leads from the folder of the command, so that the
+// prefix may be moved.
+std::filesystem::path reader_path() {
+  const std::filesystem::path command = std::filesystem::read_symlink("/proc/self/exe");
+  return (command.parent_path() / SPHERULE_MODULE_FOLDER / "spherule_cad").lexically_normal();
+}
 
 // Of processor time.
 long most_seconds(const std::filesystem::path& path, const CadReadOptions& options) {
@@ -58,7 +65,7 @@ void check_end(const internal::ProgramOutput& output, const std::string& program
 
 std::vector<CadBody> read_apart(const char* function, const std::filesystem::path& path,
                                 const CadReadOptions& options) {
-  const std::string program = module_path("spherule_cad").string();
+  const std::string program = reader_path().string();
   const long seconds = most_seconds(path, options);
   const std::array<std::string, kCadArguments - 1> arguments = {
       function,

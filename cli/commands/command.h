@@ -19,7 +19,6 @@ void add_robot(CLI::App& app, int& exit_code);
 void add_audit_robot(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_check_srdf(CLI::App& app, int& exit_code);
-void add_baseline(CLI::App& app, int& exit_code);
 void add_help(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
 void add_manual(CLI::App& app, int& exit_code);

@@ -236,7 +236,7 @@ void add_fit(CLI::App& app, int& exit_code) {
            "part.html",
            "spherule fit part.stl -o part.json --tool tool.json --levels 4,2,1 --tree "
            "part.tree",
-           "spherule fit part.stl -o part.json --method packing --max-error 2 --report "
+           "spherule fit part.stl -o part.json --method paper --max-error 2 --report "
            "report.json",
            "spherule fit parts/*.stl --each -o covers --max-error 1 --skip-existing --shard "
            "2/8"}}));

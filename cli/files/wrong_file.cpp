@@ -49,7 +49,6 @@ const std::map<std::string, std::map<std::string, Kinds>, std::less<>> kTakes = 
       {"trajectory", {FileKind::kTable}},
       {"--spheres", kRobotSets},
       {"--pairs", {FileKind::kPairs}}}},
-    {"baseline", {{"mesh", {FileKind::kMesh}}}},
 };
 
 const std::map<std::string, Kinds>* taken_by(const CLI::App& command) {

@@ -6,6 +6,7 @@
 #include "cli/options/check_number.h"
 #include "cli/options/search_options.h"
 #include "io/sphere_file.h"
+#include "simplifier/option_record.h"
 #include "simplifier/zone_file.h"
 
 #include <CLI/CLI.hpp>
@@ -89,9 +90,8 @@ void add_method_options(CLI::App& command, FitArguments& arguments) {
   SimplifyOptions& options = arguments.options;
   command
       .add_option("--method", arguments.method,
-                  "How the inside is covered: cover (fewest spheres), paper (the paper's loop), "
-                  "medial (AMAA) or packing (largest first)")
-      ->check(CLI::IsMember(fit_method_names()));
+                  "How the inside is covered: cover (fewest spheres) or paper (the paper's loop)")
+      ->check(CLI::IsMember(method_names()));
   command
       .add_option("--external", arguments.external,
                   "How external spheres are placed: reachable, random, none")
@@ -100,7 +100,7 @@ void add_method_options(CLI::App& command, FitArguments& arguments) {
       .add_option("--external-limit", options.external_limit, "Attempts of the random placement")
       ->check(check_not_negative);
   arguments.lengths.add(command, "--min-internal", options.min_internal_diameter,
-                        "Diameter at which paper and packing seed a sphere (default: E / 2)");
+                        "Diameter at which paper seeds a sphere (default: E / 2)");
   command
       .add_option("--levels", arguments.levels,
                   "Fit coarser levels of detail too and join all in one tree; the "
@@ -141,7 +141,7 @@ void add_fit_options(CLI::App& command, FitArguments& arguments) {
 SimplifyOptions fit_options(FitArguments& arguments, const LengthContext& context) {
   arguments.lengths.convert(context);
   SimplifyOptions options = arguments.options;
-  choose_method(arguments.method, options);
+  options.method = method_named(arguments.method);
   options.external = placement_named(arguments.external);
   if (!arguments.levels.empty()) {
     options.levels = lengths_in(arguments.levels, "--levels", context);

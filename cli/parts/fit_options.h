@@ -6,7 +6,6 @@
 #include "cli/options/external_spheres_flag.h"
 #include "cli/options/length_options.h"
 #include "cli/options/shard.h"
-#include "cli/parts/stage2_method.h"
 #include "simplifier/simplify.h"
 
 #include <string>
@@ -33,7 +32,7 @@ struct FitArguments {
   bool skips_existing = false;
   Shard shard;  // of the models, with `each`
   ReportContent report_content = ReportContent::kNoExternalSpheres;
-  std::string method = fit_method_names().front();
+  std::string method = method_names().front();
   std::string external = placement_names().front();
   UnitArguments unit;
   ModelReadOptions reading;  // the scale apart

@@ -35,7 +35,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/spheruleConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/spheruleConfig.cmake
               ${PROJECT_BINARY_DIR}/spheruleConfigVersion.cmake
         DESTINATION ${destination})
-if(SPHERULE_OMPL)
+if(TARGET spherule_ompl)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/SpheruleOmpl.cmake DESTINATION ${destination})
 endif()
 

@@ -9,7 +9,7 @@ from conan.tools.build import check_min_cppstd
 from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, load
 
-LEFT_OUT = ("BASELINES", "CAD", "FCL", "OMPL", "CLI", "PYTHON", "TESTS", "BENCH")
+LEFT_OUT = ("CAD", "FCL", "OMPL", "CLI", "PYTHON", "TESTS")
 FOLDERS = ("spheretree", "mesh", "simplifier", "collide", "robot", "docs", "examples")
 
 

@@ -45,11 +45,6 @@ TEST_F(UsageTest, MethodsThatAreNotThereAreRefused) {
     return std::vector<std::string>{"fit", "box.stl", "-o", "out.json", "--method", method};
   };
   expect_refusal(with_method("other"), "other");
-#ifndef SPHERULE_HAS_BASELINES
-  for (const char* method : {"medial", "packing"}) {
-    expect_refusal(with_method(method), "SPHERULE_BASELINES");
-  }
-#endif
   EXPECT_EQ(files(), std::vector<std::string>{"box.stl"});
 }
 

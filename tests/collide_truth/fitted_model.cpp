@@ -2,12 +2,12 @@
 #include "tests/collide_truth/fitted_model.h"
 
 #include "base/rounding.h"
-#include "bench/scenes/shapes.h"
 #include "io/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
+#include "tests/support/shapes.h"
 #include "tests/support/zoo.h"
 
 #include <algorithm>

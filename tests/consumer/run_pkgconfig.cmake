@@ -17,14 +17,6 @@ if(EXISTS ${WORK}/prefix/bin/spherule)
       message(FATAL_ERROR "the command is installed without share/${file}")
     endif()
   endforeach()
-  # What it loads when that is needed is found in the moved prefix.
-  if(EXISTS ${WORK}/prefix/${LIBRARIES}/spherule/spherule_level_set.so)
-    # Long and thin: what is inside is found in less time.
-    file(WRITE ${WORK}/tetrahedron.off
-         "OFF\n4 4 0\n0 0 0\n1 0 0\n0 0.05 0\n0 0 0.05\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
-    run(${WORK}/prefix/bin/spherule baseline fill ${WORK}/tetrahedron.off -o ${WORK}/filled.json --step 0.02
-        --conservative)
-  endif()
 endif()
 set(ENV{PKG_CONFIG_PATH} ${WORK}/prefix/${LIBRARIES}/pkgconfig)
 run(${PKG_CONFIG} --print-errors --validate spherule-${NAME})

@@ -2,9 +2,9 @@
 // The answers of the library itself, for the test of the Python module: reads what
 // equal_answers_test.py wrote into a folder, and writes doubles. Usage: python_answers FOLDER
 
-#include "bench/python/cell_files.h"
 #include "collide/collide.h"
 #include "spheretree/tree_file.h"
+#include "tests/python/cell_files.h"
 
 #include <exception>
 #include <filesystem>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The soak, or a part of it. See tests/soak/README.md.
 #include "base/error.h"
-#include "bench/program.h"
 #include "tests/soak/soak_plan.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <cstdint>

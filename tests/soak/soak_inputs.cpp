@@ -2,11 +2,11 @@
 #include "tests/soak/soak_inputs.h"
 
 #include "base/files.h"
-#include "bench/scenes/shapes.h"
 #include "io/mesh_io.h"
 #include "io/sphere_file.h"
 #include "spheretree/build.h"
 #include "spheretree/tree_file.h"
+#include "tests/support/shapes.h"
 
 #include <vector>
 

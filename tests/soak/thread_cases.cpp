@@ -3,13 +3,13 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "bench/scenes/shapes.h"
 #include "collide/collide.h"
 #include "collide/pair_cache.h"
 #include "robot/check/robot_scene.h"
 #include "simplifier/simplify.h"
 #include "tests/soak/random_scene.h"
 #include "tests/soak/soak_robot.h"
+#include "tests/support/shapes.h"
 
 #include <atomic>
 #include <cstddef>

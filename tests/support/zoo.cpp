@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/zoo.h"
 
-#include "bench/scenes/shapes.h"
-#include "bench/scenes/solids.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
+#include "tests/support/shapes.h"
+#include "tests/support/solids.h"
 
 #include <array>
 #include <cmath>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/collide.h"
 #include "base/error.h"
-#include "bench/checkers/fcl_solid.h"
-#include "bench/scenes/shapes.h"
 #include "collide/collide.h"
 #include "collide/motion/motion.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/support/effort.h"
+#include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
+#include "tests/support/shapes.h"
 
 #include <fcl/narrowphase/continuous_collision.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include "tests/adapters/fcl/models.h"
 
 #include "adapters/fcl/conversions.h"
-#include "bench/scenes/shapes.h"
 #include "tests/support/effort.h"
+#include "tests/support/shapes.h"
 
 #include <map>
 #include <stdexcept>

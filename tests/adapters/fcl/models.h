@@ -2,8 +2,8 @@
 #pragma once
 
 #include "adapters/fcl/sphere_model.h"
-#include "bench/checkers/fcl_solid.h"
 #include "geometry/triangle_mesh.h"
+#include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
 
 #include <fcl/common/types.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One program, compiled for FCL and for spherule: what it finds with the one and with the other.
 #include "adapters/fcl/collide.h"
-#include "bench/checkers/fcl_solid.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/adapters/fcl/same_program.h"
 #include "tests/support/effort.h"
+#include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/baseline/medial_cover.h"
+
+#include "base/rounding.h"
+#include "base/threads.h"
+#include "bench/baseline/internal/best_reduction.h"
+#include "bench/baseline/internal/medial_spheres.h"
+#include "bench/baseline/internal/simplified_probe.h"
+#include "bench/baseline/internal/simplified_solid.h"
+#include "simplifier/proof/protrusion.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+using internal::FittedSphere;
+
+// Shares of E that the spheres may protrude by before they grow over what they leave uncovered.
+// What leaks in one trial is a sample in the next, so that less has to be left for growing.
+constexpr std::array kShares{0.7, 0.8, 0.88};
+// Rounds of a trial in which all spheres are made anew with what leaked; after those, others are
+// added.
+constexpr int kRounds = 6;
+constexpr int kMendingRounds = 12;
+
+// Medial spheres protrude less than the spheres made of them by this factor.
+constexpr double kErrorFactor = 2.0;
+constexpr std::size_t kFirstSites = 4000;
+constexpr std::size_t kMaxSites = 20000;
+// Of E: what is kept of it for the margins of the proof; how near to the boundary of S a sample is
+// a site; and how far apart leaks become samples.
+constexpr double kReserve = 2.0 * internal::kProofMargin;
+constexpr double kAtBoundary = 0.05;
+constexpr double kLeakSpacing = 0.2;
+
+std::vector<Sphere> spheres_of(const std::vector<FittedSphere>& fitted) {
+  std::vector<Sphere> spheres;
+  for (const FittedSphere& f : fitted) spheres.push_back(f.sphere);
+  return spheres;
+}
+
+std::vector<Sphere> inflated(std::vector<Sphere> spheres, double inflation) {
+  for (Sphere& sphere : spheres) sphere.radius = add_up(sphere.radius, inflation);
+  return spheres;
+}
+
+class MedialCover {
+ public:
+  MedialCover(const TriangleMesh& mesh, const ExternalSpheres& external,
+              const CoverOptions& options)
+      : options_(options),
+        solid_(mesh, external, options, "medial"),
+        probe_(solid_.clearance, solid_.distance),
+        samples_(solid_.samples(mesh)),
+        axis_(probe_, sites_among(samples_), samples_) {}
+
+  SphereCover run() {
+    std::optional<Trial> best;
+    for (const double share : kShares) {
+      if (options_.progress) options_.progress(-1.0, "reducing medial spheres");
+      Trial trial = attempt(share * options_.max_error);
+      if (!best || is_better(trial, *best)) best = std::move(trial);
+    }
+    return std::move(best->cover);
+  }
+
+ private:
+  struct Trial {
+    SphereCover cover;
+    double protrusion = 0.0;  // proved, without regard to the least radius
+  };
+
+  bool is_proved(const Trial& trial) const { return trial.protrusion <= options_.max_error; }
+  bool is_better(const Trial& a, const Trial& b) const {
+    if (is_proved(a) != is_proved(b)) return is_proved(a);
+    return is_proved(a) ? a.cover.spheres.size() < b.cover.spheres.size()
+                        : a.protrusion < b.protrusion;
+  }
+
+  std::vector<Vector3d> sites_among(const std::vector<Vector3d>& samples) const {
+    std::vector<Vector3d> sites;
+    for (std::size_t i = 0; i < samples.size(); i += 1 + samples.size() / kFirstSites) {
+      const Vector3d& p = samples[i];
+      if (probe_.clearance(p) <= kAtBoundary * options_.max_error) sites.push_back(p);
+    }
+    return sites;
+  }
+
+  // Spheres that protrude by no more than `wanted`, unless the medial spheres do, and hold what
+  // leaked so far; then grown over what they leave open.
+  Trial attempt(double wanted) {
+    axis_.refine({wanted / kErrorFactor, 0, kMaxSites});
+    std::vector<FittedSphere> fitted;
+    std::size_t anew = 0;  // from this sample on, spheres are yet to be made
+    for (int round = 0; round < kRounds + kMendingRounds; ++round) {
+      if (round < kRounds) {
+        anew = 0;
+        fitted.clear();
+      }
+      const std::vector<FittedSphere> more = reduced(anew, wanted);
+      fitted.insert(fitted.end(), more.begin(), more.end());
+      anew = samples_.size();
+      const double room =
+          (1.0 - kReserve) * options_.max_error - internal::largest_protrusion(fitted);
+      if (room < 0.0 || !learn_leaks(inflated(spheres_of(fitted), room))) break;
+    }
+    return finished(spheres_of(fitted));
+  }
+
+  // Spheres for the samples from this one on.
+  std::vector<FittedSphere> reduced(std::size_t first, double wanted) {
+    std::vector<std::uint32_t> points(samples_.size() - first);
+    std::iota(points.begin(), points.end(), static_cast<std::uint32_t>(first));
+    const internal::ReductionTask task{probe_, samples_, points, axis_.spheres(),
+                                       wanted / kErrorFactor};
+    const internal::ReductionGoal goal{.count = 0, .max_protrusion = wanted};
+    internal::Reduced made = internal::reduce(task, goal, reduction_);
+    reduction_ = made.reduction;
+    return std::move(made.spheres);
+  }
+
+  // False if the spheres are proved to cover S.
+  bool learn_leaks(const std::vector<Sphere>& spheres) {
+    const internal::SphereHierarchy hierarchy(spheres);
+    const internal::SolidCells::Leaks leaks = solid_.cells.find_leaks(
+        {spheres, hierarchy}, internal::kErrorTolerance * options_.max_error,
+        kLeakSpacing * options_.max_error);
+    if (leaks.empty()) return false;
+    samples_.insert(samples_.end(), leaks.in_solid.begin(), leaks.in_solid.end());
+    samples_.insert(samples_.end(), leaks.pinched.begin(), leaks.pinched.end());
+    axis_.watch(samples_);
+    return true;
+  }
+
+  Trial finished(const std::vector<Sphere>& spheres) const {
+    const internal::CoverageProof remaining =
+        internal::remaining_error(solid_.clearance, solid_.distance, spheres, options_.max_error);
+    Trial trial;
+    internal::inflate(trial.cover, spheres, remaining.upper, options_);
+    trial.protrusion = internal::greatest(internal::protrusions_over_solid(
+        solid_.clearance, solid_.distance, inflated(spheres, trial.cover.inflation)));
+    return trial;
+  }
+
+  const CoverOptions& options_;
+  internal::SimplifiedSolid solid_;
+  internal::SimplifiedProbe probe_;
+  std::vector<Vector3d> samples_;
+  internal::MedialAxis axis_;
+  SphereReduction reduction_ = SphereReduction::kBest;  // from the first on, the one that it was
+};
+
+}  // namespace
+
+SphereCover medial_cover(const TriangleMesh& mesh, const ExternalSpheres& external,
+                         const CoverOptions& options) {
+  const internal::ThreadLimit threads(options.threads);
+  return MedialCover(mesh, external, options).run();
+}
+
+}  // namespace spherule

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/baseline/octree_spheres.h"
+
+#include "base/error.h"
+#include "base/rounding.h"
+#include "bench/baseline/internal/cell_octree.h"
+#include "bench/baseline/internal/cell_options.h"
+#include "geometry/mesh_distance.h"
+#include "simplifier/stage2/cover_moves.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using internal::CellOctree;
+using Cell = CellOctree::Cell;
+using State = CellOctree::State;
+
+double step_of(const OctreeSpheresOptions& options, const Eigen::AlignedBox3d& box,
+               double padding) {
+  internal::check_padding(options.padding);
+  if (options.depth == 0) {
+    internal::check_max_error(options.max_error);
+    return internal::edge_for_error(options.max_error);
+  }
+  if (options.max_error != 0.0) throw Error("depth", "leaves nothing to a max error");
+  if (options.depth < 0 || options.depth > CellOctree::kMostLevels) {
+    throw Error("depth", std::to_string(options.depth) + " is not between 1 and " +
+                             std::to_string(CellOctree::kMostLevels));
+  }
+  // A hair above, so that as many cells hold the margins, too.
+  const double size = box.sizes().maxCoeff() + 2.0 * padding;
+  return std::ldexp(size * (1.0 + 0x1p-10), -options.depth);
+}
+
+// The nodes of the sphere tree, breadth-first.
+class TreeMaker {
+ public:
+  TreeMaker(const CellOctree& octree, const MeshDistance& distance,
+            const OctreeSpheresOptions& options)
+      : octree_(octree),
+        distance_(distance),
+        whole_surface_(options.depth > 0),
+        inside_(options.filling == Filling::kSolid),
+        max_error_(options.depth > 0 ? 2.0 * octree.circumscribed(octree.levels())
+                                     : options.max_error) {
+    find_kept();
+  }
+
+  SphereTreeData run() {
+    std::vector<Cell> nodes = {octree_.cells().front()};
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Cell cell = nodes[i];
+      const Sphere sphere{octree_.center(cell), octree_.circumscribed(cell.level)};
+      add_sphere(sphere);
+      if (is_leaf(cell, sphere)) {
+        data_.first_child.push_back(static_cast<std::int32_t>(data_.spheres.size()));
+        data_.child_count.push_back(0);
+        data_.spheres.push_back(sphere);
+        continue;
+      }
+      data_.first_child.push_back(static_cast<std::int32_t>(nodes.size()));
+      const std::size_t before = nodes.size();
+      for (std::uint32_t k = 0; k < 8; ++k) {
+        if (cell.state == State::kInside) {
+          nodes.push_back(CellOctree::child(cell, k));
+        } else if (kept_[cell.first_child + k]) {
+          nodes.push_back(octree_.cells()[cell.first_child + k]);
+        }
+      }
+      data_.child_count.push_back(static_cast<std::int32_t>(nodes.size() - before));
+      if (nodes.size() > CellOctree::kMaxCells) {
+        throw Error("octree", "more than " + std::to_string(CellOctree::kMaxCells) +
+                                  " cubes; take a smaller depth or a larger max error");
+      }
+    }
+    return std::move(data_);
+  }
+
+ private:
+  // A refined cell may turn out to hold nothing: the surface was only possibly in it.
+  void find_kept() {
+    const std::vector<Cell>& cells = octree_.cells();
+    kept_.resize(cells.size());
+    for (std::size_t i = cells.size(); i-- > 0;) {
+      const State state = cells[i].state;
+      bool keep = state == State::kSurface || (state == State::kInside && inside_);
+      for (std::uint32_t k = 0; k < 8 && state == State::kRefined && !keep; ++k) {
+        keep = kept_[cells[i].first_child + k];
+      }
+      kept_[i] = keep;
+    }
+  }
+
+  bool is_leaf(const Cell& cell, const Sphere& sphere) const {
+    if (cell.level == octree_.levels()) return true;
+    const bool inside = cell.state == State::kInside;
+    if (!inside && whole_surface_) return false;
+    const SurfaceDistance d = distance_(sphere.center);
+    const double protrusion = inside || octree_.has_center_inside(cell)
+                                  ? sub_up(sphere.radius, d.lower)
+                                  : add_up(sphere.radius, d.upper);
+    return protrusion <= max_error_;
+  }
+
+  void add_sphere(const Sphere& sphere) {
+    data_.x.push_back(sphere.center.x());
+    data_.y.push_back(sphere.center.y());
+    data_.z.push_back(sphere.center.z());
+    data_.radius.push_back(sphere.radius);
+  }
+
+  const CellOctree& octree_;
+  const MeshDistance& distance_;
+  bool whole_surface_;
+  bool inside_;
+  double max_error_;
+  std::vector<bool> kept_;
+  SphereTreeData data_;
+};
+
+}  // namespace
+
+OctreeSpheres octree_spheres(const TriangleMesh& mesh, const OctreeSpheresOptions& options) {
+  validate(mesh, "mesh");
+  const MeshDistance distance(mesh);
+  const double step = step_of(options, distance.box(), add_up(options.padding, mesh.vertex_error));
+  const CellOctree octree(mesh, step, options.padding);
+  return {SphereTree(TreeMaker(octree, distance, options).run()), step};
+}
+
+}  // namespace spherule

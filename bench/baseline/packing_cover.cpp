@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/baseline/packing_cover.h"
+
+#include "base/threads.h"
+#include "bench/baseline/internal/simplified_solid.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/paper/internal_spheres.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+using Eigen::Vector3d;
+
+// A point of S and the sphere that grows from it.
+struct Candidate {
+  Vector3d point = Vector3d::Zero();
+  Sphere sphere;
+};
+
+// The largest sphere first, ties in the order of the points.
+std::vector<Candidate> candidates_of(const std::vector<Vector3d>& points,
+                                     const internal::SphereInflater& grow,
+                                     std::size_t& seeds_rejected) {
+  std::vector<Candidate> candidates(points.size());
+  std::atomic<std::size_t> rejected = 0;
+  internal::parallel_for(0, points.size(), [&](std::size_t i) {
+    std::size_t here = 0;
+    candidates[i] = {points[i], grow(points[i], here)};
+    rejected += here;
+  });
+  seeds_rejected += rejected;
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.sphere.radius > b.sphere.radius; });
+  return candidates;
+}
+
+// Places the candidates whose points are still further than `limit` from the spheres.
+void place(const std::vector<Candidate>& candidates, double limit, bool where_centers_are_held,
+           internal::SphereSet& spheres) {
+  for (const Candidate& c : candidates) {
+    if (spheres.nearest(c.point).upper <= limit) continue;
+    if (!where_centers_are_held && spheres.nearest(c.sphere.center).upper < 0.0) continue;
+    spheres.add(c.sphere);
+    internal::check_count(spheres.spheres().size());
+  }
+}
+
+}  // namespace
+
+SphereCover packing_cover(const TriangleMesh& mesh, const ExternalSpheres& external,
+                          const CoverOptions& options) {
+  const internal::ThreadLimit threads(options.threads);
+  if (options.progress) options.progress(-1.0, "growing spheres");
+  const internal::SimplifiedSolid solid(mesh, external, options, "packing");
+  SphereCover result;
+  const std::vector<Candidate> candidates =
+      candidates_of(solid.samples(mesh), internal::SphereInflater(solid.clearance, options),
+                    result.seeds_rejected);
+  const double limit = internal::kLoopLimit * options.max_error;
+  internal::SphereSet spheres;
+  place(candidates, limit, false, spheres);
+  place(candidates, limit, true, spheres);
+  internal::fill_gaps(solid.clearance, solid.distance, options, spheres, result.seeds_rejected);
+  const internal::CoverageProof remaining = internal::remaining_error(
+      solid.clearance, solid.distance, spheres.spheres(), options.max_error);
+  internal::inflate(result, spheres.spheres(), std::min(limit, remaining.upper), options);
+  return result;
+}
+
+}  // namespace spherule

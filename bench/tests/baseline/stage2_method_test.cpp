@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The stage 2 methods that baselines offer: medial_cover() and packing_cover().
+#include "base/error.h"
+#include "bench/baseline/internal/simplified_probe.h"
+#include "bench/baseline/medial_cover.h"
+#include "bench/baseline/packing_cover.h"
+#include "simplifier/simplify.h"
+#include "tests/simplifier/fitting.h"
+#include "tests/simplifier/judge.h"
+#include "tests/simplifier/octree_proof.h"
+#include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+void PrintTo(const Stage2Method& phase, std::ostream* out) {
+  *out << phase.name;
+}
+
+}  // namespace spherule
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+using internal::Clearance;
+
+class Stage2OfBaselines : public testing::TestWithParam<Stage2Method> {
+ protected:
+  Fit fit_of(const TriangleMesh& mesh, const FitShares& shares = {},
+             CoverOptions options = {}) const {
+    Fit fitted;
+    fitted.external = externals_of(mesh, shares);
+    fitted.max_error = options.max_error = shares.max_error * diagonal_of(mesh);
+    fitted.cover = GetParam().run(mesh, fitted.external, options);
+    return fitted;
+  }
+};
+
+// G1 by the certificate, by samples and by a proof that shares no code with the fit.
+void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed,
+                    int samples = effort(3000, 300)) {
+  const std::vector<Sphere>& spheres = fitted.cover.spheres;
+  EXPECT_TRUE(certificate_of(mesh, fitted, spheres).covered);
+  Random random(seed);
+  const auto count = static_cast<std::size_t>(samples);
+  std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
+  for (Vector3d& p : surface) p += 0.999999 * fitted.external.padding * random.direction();
+  EXPECT_EQ(judge_cover(surface, spheres).uncovered, 0U);
+  EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), spheres).uncovered, 0U);
+}
+
+// G2 by the certificate and by samples of the surfaces of the spheres.
+void expect_tight(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed,
+                  int per_sphere = effort(40, 6)) {
+  Random random(seed);
+  const ProtrusionJudgement judged = judge_protrusion(fitted.cover.spheres, mesh, fitted.external,
+                                                      fitted.max_error + 1e-9 * diagonal_of(mesh),
+                                                      static_cast<std::size_t>(per_sphere), random);
+  EXPECT_EQ(judged.beyond, 0U) << "of " << judged.points << ", one at "
+                               << judged.example.transpose();
+  const Certificate certificate = certificate_of(mesh, fitted, fitted.cover.spheres);
+  ASSERT_TRUE(certificate.protrusion_over_simplified_max.has_value());
+  EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
+}
+
+TEST_P(Stage2OfBaselines, CoversSevenShapesWithinTheError) {
+  std::vector<NamedMesh> shapes = effort(zoo_to_fit(), 3);
+  shapes.resize(std::min<std::size_t>(shapes.size(), 7));  // the others take long
+  for (const NamedMesh& named : shapes) {
+    SCOPED_TRACE(named.name);
+    const Fit fitted = fit_of(named.mesh, {.max_error = 0.12});
+    expect_covered(named.mesh, fitted, 171);
+    expect_tight(named.mesh, fitted, 172);
+    const OctreeProof proof = prove_by_octree(fitted.external, fitted.cover.spheres);
+    EXPECT_EQ(proof.verdict, OctreeVerdict::kCovered) << "at " << proof.point.transpose();
+  }
+}
+
+TEST_P(Stage2OfBaselines, EveryWayToPlaceExternalSpheresGivesACoveredSolid) {
+  for (const ExternalPlacement placement : {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {
+    const TriangleMesh mesh = l_bracket();
+    FitShares shares;
+    shares.placement = placement;
+    const Fit fitted = fit_of(mesh, shares);
+    expect_covered(mesh, fitted, 173);
+    expect_tight(mesh, fitted, 174);
+  }
+}
+
+// Without a simplification to speak of: D = E / 2.
+TEST_P(Stage2OfBaselines, CoversTheSolidAsItIs) {
+  const TriangleMesh mesh = open_box();
+  const Fit fitted = fit_of(mesh, {.max_error = 0.12, .diameter = 0.5});
+  // Of more than a hundred thousand external spheres, all of which are tried.
+  expect_covered(mesh, fitted, 175, 100);
+  expect_tight(mesh, fitted, 176, 1);
+}
+
+TEST_P(Stage2OfBaselines, WithPaddingTheGrownMeshIsCovered) {
+  TriangleMesh mesh = mesh_named("three-fins");
+  mesh.vertex_error = 1e-3;
+  FitShares shares;
+  shares.padding = 0.9;
+  expect_covered(mesh, fit_of(mesh, shares), 177);
+}
+
+// Sizes and places far from one.
+TEST_P(Stage2OfBaselines, ScaleAndPlaceDoNotMatter) {
+  for (const double scale : {1e-6, 1e6}) {
+    TriangleMesh mesh = l_bracket();
+    for (Vector3d& v : mesh.vertices) v = scale * (v + Vector3d(1e4, -1e4, 1e4));
+    const Fit fitted = fit_of(mesh);
+    expect_covered(mesh, fitted, 178);
+    expect_tight(mesh, fitted, 179);
+  }
+}
+
+TEST_P(Stage2OfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
+  for (const char* name : effort(std::vector{"l-bracket", "cube"}, 1)) {
+    const TriangleMesh mesh = mesh_named(name);
+    const std::vector<Sphere> first = fit_of(mesh).cover.spheres;
+    for (const int threads : {1, 2}) {
+      CoverOptions options;
+      options.threads = threads;
+      EXPECT_EQ(fit_of(mesh, {}, options).cover.spheres, first);
+    }
+  }
+}
+
+TEST_P(Stage2OfBaselines, ALargerErrorNeedsFewerSpheres) {
+  std::size_t before = 100000;
+  for (const double share : {0.05, 0.1, 0.2}) {
+    const std::size_t count = fit_of(cube_mesh(), {.max_error = share}).cover.spheres.size();
+    EXPECT_LT(count, before);
+    before = count;
+  }
+}
+
+TEST_P(Stage2OfBaselines, EverySphereIsInflatedByTheSame) {
+  const Fit fitted = fit_of(l_bracket());
+  const SphereCover& cover = fitted.cover;
+  EXPECT_GT(cover.inflation, 0.0);
+  ASSERT_EQ(cover.spheres.size(), cover.spheres_before_inflation.size());
+  for (std::size_t i = 0; i < cover.spheres.size(); ++i) {
+    ASSERT_EQ(cover.spheres[i].center, cover.spheres_before_inflation[i].center);
+    ASSERT_NEAR(cover.spheres[i].radius, cover.spheres_before_inflation[i].radius + cover.inflation,
+                1e-12);
+  }
+}
+
+TEST_P(Stage2OfBaselines, NoSphereIsSmallerThanTheLeastRadius) {
+  const TriangleMesh mesh = l_bracket();
+  CoverOptions options;
+  options.min_radius = 2.5 * FitShares{}.max_error * diagonal_of(mesh);
+  const Fit fitted = fit_of(mesh, {}, options);
+  for (const Sphere& s : fitted.cover.spheres) ASSERT_GE(s.radius, options.min_radius);
+  expect_covered(mesh, fitted, 180);
+}
+
+TEST_P(Stage2OfBaselines, BadInputIsRefusedByName) {
+  const ExternalSpheres external = externals_of(cube_mesh(), {});
+  const auto refused = [&](const CoverOptions& options,
+                           const TriangleMesh& mesh = cube_mesh()) -> std::string {
+    try {
+      GetParam().run(mesh, external, options);
+    } catch (const Error& error) {
+      return error.subject();
+    }
+    return "accepted";
+  };
+  for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), 1e300}) {
+    EXPECT_EQ(refused({.max_error = bad}), "max error");
+    EXPECT_EQ(refused({.max_error = 0.3, .min_radius = bad}), "min radius");
+    EXPECT_EQ(refused({.max_error = 0.3, .min_internal_diameter = bad}), "min internal diameter");
+  }
+  EXPECT_EQ(refused({}), "max error");
+  EXPECT_EQ(refused({.max_error = 1e-15}), "max error");
+  EXPECT_EQ(refused({.max_error = 0.3}, {}), "mesh");
+  const Zone zone{.shape = Sphere{{0, 0, 0}, 0.5}, .max_error = 0.1};
+  EXPECT_EQ(refused({.max_error = 0.3, .zones = {zone}}), "zones");
+  const Zone of_diameter{.shape = Sphere{{0, 0, 0}, 0.5}, .min_external_diameter = 0.1};
+  EXPECT_EQ(refused({.max_error = 0.3, .zones = {of_diameter}}), "accepted");
+}
+
+// What simplify() promises of its own stage 2 methods: the certificate, the record, levels.
+TEST_P(Stage2OfBaselines, StandsInSimplify) {
+  const TriangleMesh mesh = l_bracket();
+  const double max_error = 0.07 * diagonal_of(mesh);
+  SimplifyOptions options{.max_error = max_error, .levels = {max_error, 3.0 * max_error}};
+  options.stage2_method = GetParam();
+  const Simplification result = simplify(mesh, options);
+  EXPECT_EQ(broken_promises(result), "");
+  EXPECT_EQ(std::get<std::string>(option_record(result.options, 1.0).at("method")),
+            GetParam().name);
+  ASSERT_EQ(result.levels.size(), 1U);
+  EXPECT_LE(result.levels[0].protrusion, 3.0 * max_error);
+  EXPECT_LT(result.levels[0].spheres.spheres.size(), result.cover.spheres.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Phases, Stage2OfBaselines,
+                         testing::Values(Stage2Method{"medial", medial_cover},
+                                         Stage2Method{"packing", packing_cover}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(PackingCover, TheLargestInscribedSphereComesFirst) {
+  const TriangleMesh mesh = box_mesh({0, 0, 0}, {1.0, 1.2, 1.4});
+  const ExternalSpheres external = externals_of(mesh, {});
+  const SphereCover packed = packing_cover(mesh, external, {.max_error = 0.05});
+  const std::vector<Sphere>& spheres = packed.spheres_before_inflation;
+  ASSERT_GT(spheres.size(), 20U);
+  // No larger one fits between the faces that are 1 apart; E tells how closely it is found.
+  EXPECT_NEAR(spheres.front().radius, 0.5, 0.005);
+  // By size, as long as no centre is held.
+  std::size_t placed = 1;
+  while (placed < spheres.size() && spheres[placed].radius <= spheres[placed - 1].radius &&
+         gap_to_spheres(spheres[placed].center, std::span(spheres).first(placed)) >= 0.0L) {
+    ++placed;
+  }
+  EXPECT_GE(placed, 8U);
+}
+
+TEST(PackingCover, ThePackingLiesInTheSolid) {
+  for (const NamedMesh& named : effort(zoo_to_fit(), 3)) {
+    SCOPED_TRACE(named.name);
+    const double max_error = FitShares{}.max_error * diagonal_of(named.mesh);
+    const ExternalSpheres external = externals_of(named.mesh, {});
+    const SphereCover packed = packing_cover(named.mesh, external, {.max_error = max_error});
+    EXPECT_LE(packed.inflation, max_error);
+    for (const Sphere& s : packed.spheres_before_inflation) {
+      // A point may stand where a sliver of S is too thin to be found, just outside of it.
+      const double off = (s.radius == 0.0 ? 1e-3 : 1e-14) * max_error;
+      ASSERT_GE(gap_to_spheres(s.center, external.spheres), s.radius - off);
+      for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_GE(s.center[axis] - s.radius, external.box.min()[axis] - off);
+        ASSERT_LE(s.center[axis] + s.radius, external.box.max()[axis] + off);
+      }
+    }
+  }
+}
+
+// Against all external spheres and faces in turn.
+TEST(SimplifiedProbe, TellsTheClearanceInS) {
+  const TriangleMesh mesh = l_bracket();
+  const ExternalSpheres external = externals_of(mesh, {});
+  const MeshDistance distance(mesh);
+  const Clearance clearance(external);
+  constexpr double kTolerance = 1e-3;
+  const internal::SimplifiedProbe probe(clearance, distance);
+  const auto judged = [&](const Vector3d& p) {
+    Real least = gap_to_spheres(p, external.spheres);
+    for (int axis = 0; axis < 3; ++axis) {
+      least = std::min({least, Real(p[axis]) - external.box.min()[axis],
+                        external.box.max()[axis] - Real(p[axis])});
+    }
+    return least;
+  };
+  Random random(181);
+  int inside = 0;
+  int outside = 0;
+  for (int i = 0; i < effort(2000, 200); ++i) {
+    const Vector3d p = random.in_box(external.box);
+    const Real exact = judged(p);
+    const double told = probe.clearance(p);
+    if (exact >= 0.0L) {
+      ++inside;
+      EXPECT_LE(told, exact);
+      EXPECT_GE(told, exact - kTolerance - 1e-12L);
+      const Vector3d boundary = probe.nearest_boundary(p);
+      EXPECT_NEAR(static_cast<double>(judged_distance(p, boundary) - exact), 0.0, kTolerance);
+      EXPECT_NEAR(static_cast<double>(judged(boundary)), 0.0, kTolerance);
+    } else {
+      ++outside;
+      EXPECT_LT(told, 0.0);
+      // Some point of S is no further than told; the outermost is no nearer than the least gap.
+      EXPECT_GE(-told, -exact - 1e-12L);
+      EXPECT_LE(-told, 1.01L * (judged_mesh_distance(p, mesh) + kTolerance) + 1e-9L);
+    }
+  }
+  EXPECT_GT(inside, effort(100, 10));
+  EXPECT_GT(outside, effort(100, 10));
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The paper's comparisons: what they count, and that conservative rows miss nothing.
+
+#include "base/error.h"
+#include "base/files.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/paper/fcl_convex_checker.h"
+#include "bench/paper/figures.h"
+#include "bench/paper/picture.h"
+#include "bench/paper/space_share.h"
+#include "bench/paper/table1.h"
+#include "tests/support/mesh_facts.h"
+#include "tests/support/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+namespace {
+
+ExternalSpheres in_box(const Eigen::Vector3d& size, std::vector<Sphere> spheres) {
+  ExternalSpheres external;
+  external.box = {Eigen::Vector3d::Zero(), size};
+  external.spheres = std::move(spheres);
+  return external;
+}
+
+TEST(SpaceShare, IsTheVolumeThatNoSphereCovers) {
+  const Eigen::Vector3d size(2.0, 3.0, 4.0);
+  EXPECT_EQ(uncovered_share(in_box(size, {}), 100), 1.0);
+  EXPECT_EQ(uncovered_share(in_box(size, {{{1.0, 1.5, 2.0}, 3.0}}), 100), 0.0);
+  const double sphere = 4.0 / 3.0 * std::numbers::pi;
+  EXPECT_NEAR(uncovered_share(in_box(size, {{{1.0, 1.5, 2.0}, 1.0}}), 200), 1.0 - sphere / 24,
+              1e-3);
+  // An eighth of one in a corner, counted once although it is there twice; one beside the box.
+  EXPECT_NEAR(
+      uncovered_share(in_box(size, {{{0, 0, 0}, 1.0}, {{0, 0, 0}, 1.0}, {{9, 9, 9}, 2.0}}), 200),
+      1.0 - sphere / 8 / 24, 1e-3);
+}
+
+TEST(PaperPipe, ItsBoreIs145PercentOfItsMetal) {
+  const double metal = signed_volume(make_paper_pipe());
+  const double bore = std::numbers::pi * 0.25 * kPaperBore * kPaperBore *
+                      bounding_box(make_paper_pipe()).sizes().maxCoeff();
+  EXPECT_NEAR(bore / metal, 1.45, 0.04);
+}
+
+// A pipe's bore is open to spheres well below its diameter (by the slack of the flood's grid) and
+// closed to those above it.
+TEST(Figure3, TheStepIsAtTheBore) {
+  const TriangleMesh pipe = make_paper_pipe();
+  const auto share = [&](double diameter) {
+    return uncovered_share(
+        place_external_spheres(pipe, {.min_external_diameter = diameter, .max_error = 0.002}), 160);
+  };
+  EXPECT_GT(share(0.041) - share(0.034), 0.3);
+}
+
+Workload boxes_for(const TriangleMesh& mesh) {
+  Workload cell = make_paper_cell();
+  for (Obstacle& obstacle : cell.obstacles) {
+    if (obstacle.part.name == "workpiece") obstacle.part.mesh = mesh;
+  }
+  return cell;
+}
+
+std::vector<std::uint8_t> verdicts(Checker& checker, const std::vector<ArmPositions>& sample) {
+  std::vector<std::uint8_t> result(sample.size());
+  checker.check(sample, result);
+  return result;
+}
+
+// Two boxes, as convex parts and as one mesh: the same surfaces, and the same answers but where
+// something is wholly within, which meshes do not see.
+TEST(FclConvexChecker, AnswersAsMeshesOfTheSameParts) {
+  TriangleMesh left = make_box({0.1, 0.1, 0.08});
+  TriangleMesh right = make_box({0.08, 0.2, 0.1});
+  for (Eigen::Vector3d& vertex : left.vertices) vertex.x() -= 0.1;
+  for (Eigen::Vector3d& vertex : right.vertices) vertex.x() += 0.1;
+  TriangleMesh both = left;
+  const int first = static_cast<int>(both.vertices.size());
+  both.vertices.insert(both.vertices.end(), right.vertices.begin(), right.vertices.end());
+  for (const Eigen::Vector3i& triangle : right.triangles) {
+    both.triangles.emplace_back(triangle.array() + first);
+  }
+  const Workload cell = boxes_for(both);
+  std::vector<ArmPositions> sample;
+  for (std::size_t i = 0; i < cell.program.size(); i += 97) sample.push_back(cell.program[i]);
+  const auto meshes = verdicts(*make_fcl_mesh_checker(cell, {}), sample);
+  const auto parts = verdicts(*make_fcl_convex_checker(cell, 0, {left, right}), sample);
+  std::size_t hits = 0;
+  std::size_t within = 0;
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    EXPECT_GE(parts[i], meshes[i]) << i;
+    hits += meshes[i];
+    within += parts[i] > meshes[i] ? 1U : 0U;
+  }
+  EXPECT_GT(hits, 10U);
+  EXPECT_LT(hits, sample.size() - 10);
+  EXPECT_LT(within, hits);
+  EXPECT_THROW(make_fcl_convex_checker(cell, 0, {}), Error);
+}
+
+TEST(Picture, ShowsEveryTriangleWithAnAreaAndEverySphere) {
+  TriangleMesh mesh = make_cube(1.0);
+  mesh.triangles.emplace_back(0, 0, 1);
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("spherule-picture-" + std::to_string(::getpid()) + ".pov");
+  write_picture({{{1, 0, 0}, mesh, {}}, {{0, 0, 1}, {}, {{{0, 0, 1}, 0.5}, {{0, 0, 2}, 0.25}}}},
+                {1, 1, 1}, path);
+  const std::string text = read_file(path);
+  std::filesystem::remove(path);
+  const auto count = [&](const std::string& word) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("triangle {"), 12U);
+  EXPECT_EQ(count("sphere {"), 2U);
+  EXPECT_EQ(count("sphere { <0,0,2>, 0.25"), 1U);
+  EXPECT_THROW(write_picture({}, {1, 1, 1}, path), Error);
+}
+
+// Says the same of every configuration.
+class Constant : public Checker {
+ public:
+  explicit Constant(std::uint8_t verdict) : verdict_(verdict) {}
+  void check(std::span<const ArmPositions> configurations,
+             std::span<std::uint8_t> verdicts) override {
+    for (std::size_t i = 0; i < configurations.size(); ++i) verdicts[i] = verdict_;
+  }
+
+ private:
+  std::uint8_t verdict_;
+};
+
+TEST(Table1, CountsWhatIsMissedAndWhatIsExtra) {
+  Workload cell = make_paper_cell();
+  std::vector<ArmPositions> program;
+  std::vector<std::uint8_t> is_critical;
+  for (std::size_t i = 0; i < cell.program.size(); i += 101) {
+    program.push_back(cell.program[i]);
+    is_critical.push_back(cell.is_critical[i]);
+  }
+  cell.program = program;
+  cell.is_critical = is_critical;
+  std::vector<Representation> representations;
+  representations.push_back({"free", "none", false, std::make_unique<Constant>(0)});
+  representations.push_back({"hit", "all", true, std::make_unique<Constant>(1)});
+  representations.push_back({"meshes", "all", true, make_fcl_mesh_checker(cell, {})});
+  const auto rows = make_table1(cell, std::move(representations), {.rounds = 1});
+  const std::size_t truth = rows[0].whole.count.missed;
+  EXPECT_GT(truth, 10U);
+  EXPECT_EQ(rows[0].whole.queries, program.size());
+  EXPECT_EQ(rows[0].whole.count.collisions, 0U);
+  EXPECT_EQ(rows[1].whole.count.collisions, program.size());
+  EXPECT_EQ(rows[1].whole.count.missed, 0U);
+  EXPECT_EQ(rows[1].whole.count.extra, program.size() - truth);
+  EXPECT_EQ(rows[2].whole.count.collisions, truth);
+  EXPECT_EQ(rows[2].whole.count.missed + rows[2].whole.count.extra, 0U);
+  for (const Table1Row& row : rows) {
+    EXPECT_LT(row.critical.queries, row.whole.queries);
+    EXPECT_LE(row.critical.count.missed, row.whole.count.missed);
+    EXPECT_GT(row.whole.seconds, 0.0);
+  }
+  EXPECT_EQ(rows[0].whole.ratio, 1.0);
+}
+
+}  // namespace
+}  // namespace spherule
