@@ -13,7 +13,7 @@ need_build_tools() {
 
 # Libraries and command without the adapters. Boost is for OpenVDB's headers.
 need_libraries() {
-  packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
+  packages+=(libeigen3-dev zlib1g-dev libtbb-dev nlohmann-json3-dev
     libcli11-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev libqhull-dev
     libtinyxml2-dev libyaml-cpp-dev libjs-three libocct-data-exchange-dev
     libocct-modeling-algorithms-dev)

@@ -14,7 +14,7 @@ endforeach()
 # Private dependencies of a shared library are its own affair; a static one hands them on.
 get_target_property(library_type spherule_spheretree TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
-  set(SPHERULE_MESH_IO_PACKAGES "EXPAT;tinyxml2;ZLIB")
+  set(SPHERULE_MESH_IO_PACKAGES "tinyxml2;ZLIB")
   set(SPHERULE_SIMPLIFIER_PACKAGES "TBB")
   set(SPHERULE_BASELINES_PACKAGES "meshoptimizer;Qhull")
   set(SPHERULE_ROBOT_PACKAGES "Threads;tinyxml2;yaml-cpp")

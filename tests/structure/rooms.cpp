@@ -51,10 +51,9 @@ const std::vector<Room>& rooms() {
       {"mesh/io",
        {"spheretree", "spheretree/text", "mesh", "mesh/geometry", "mesh/parsing"},
        {"Eigen"},
-       {{"expat", "io/xml_events.cpp"},
-        {"nlohmann", "io/gltf_document.h"},
-        {"tinyxml2", "io/collada_document.h"},
-        {"zlib", "io/zip_member.cpp"}}},
+       {{"nlohmann", "io/gltf_data.h"},
+        {"tinyxml2", "io/xml_text.h"},
+        {"zlib", "io/read_3mf.cpp"}}},
 
       {"simplifier",
        joined({kSimplifier, {"spheretree/text"}}),

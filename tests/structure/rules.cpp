@@ -28,7 +28,6 @@ struct Prefix {
 constexpr Prefix kPrefixes[] = {{"Eigen/", "Eigen"},
                                 {"nlohmann/", "nlohmann"},
                                 {"assimp/", "assimp"},
-                                {"expat.h", "expat"},
                                 {"zlib.h", "zlib"},
                                 {"tbb/", "tbb"},
                                 {"oneapi/tbb/", "tbb"},

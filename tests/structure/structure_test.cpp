@@ -41,7 +41,7 @@ TEST(Structure, ArrowsOfTheTableAreAllowed) {
            {"tests/bench/scene_test.cpp", "\"bench/scenes/work_cell.h\""},
            {"tests/spheretree/crc64_test.cpp", "\"spheretree/internal/crc64.h\""},
            {"io/sphere_file.cpp", "<nlohmann/json.hpp>"},
-           {"io/collada_document.h", "<tinyxml2.h>"},
+           {"io/xml_text.h", "<tinyxml2.h>"},
            {"collide/kernels/kernel_avx2.cpp", "<immintrin.h>"},
            {"collide/collide.h", "<vector>"},
            {"tests/consumer/collide/main.cpp", "<spherule/collide/collide.h>"}}) {
