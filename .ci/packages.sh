@@ -13,7 +13,7 @@ need_build_tools() {
 
 # Libraries without the adapters and without CAD files.
 need_libraries() {
-  packages+=(libeigen3-dev libexpat1-dev zlib1g-dev libtbb-dev nlohmann-json3-dev libtinyxml2-dev
+  packages+=(libeigen3-dev zlib1g-dev libtbb-dev nlohmann-json3-dev libtinyxml2-dev
     libyaml-cpp-dev)
 }
 

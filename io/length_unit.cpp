@@ -4,7 +4,6 @@
 #include "base/files.h"
 #include "io/mesh_io.h"
 #include "io/mesh_readers.h"
-#include "io/scene_file.h"
 
 #include <algorithm>
 #include <array>

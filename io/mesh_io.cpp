@@ -8,8 +8,7 @@
 #include "geometry/vertex_rounding.h"
 #include "geometry/weld.h"
 #include "io/mesh_readers.h"
-#include "io/scene_file.h"
-#include "io/weld_within.h"
+#include "io/placement.h"
 
 #include <Eigen/Geometry>
 

@@ -42,11 +42,11 @@ struct MeshReadOptions {
 // applied), with the axes as they stand in it (<up_axis> is ignored, as the tools of ROS do); one
 // in which the <asset> of a part states another unit or <up_axis> than that of the document is
 // refused. The other formats come out in their own numbers times `scale` (a 3MF file in its own
-// unit, of which the default is the millimetre). Skins and morph weights of DAE and glTF are placed
-// as the file states them; what would be shown in another way than the format specifies is refused,
-// and so is a file that shows more than 2^25 vertices and triangles, or refers to its parts too
-// often (docs/security.md). What a 3MF file shows must be meshes: extensions of the format that it
-// requires, or that add other shapes, are refused.
+// unit, of which the default is the millimetre). Skins and morph targets are refused, as is what
+// would be shown in another way than the format specifies, and a file that shows more than 2^25
+// vertices and triangles, or refers to its parts too often (docs/security.md). What a 3MF file
+// shows must be meshes: extensions of the format that it requires, or that add other shapes, are
+// refused.
 //
 // `vertex_error` bounds what reading cost: nothing for binary STL and PLY and for glTF without node
 // transforms; 2^-53 of the largest coordinate for numbers in text, which are read as doubles, and

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/rounding.h"
 #include "geometry/vertex_rounding.h"
-#include "io/gltf_accessors.h"
-#include "io/gltf_document.h"
+#include "io/gltf_data.h"
 #include "io/mesh_readers.h"
-#include "io/placed_part.h"
-#include "io/scene_budget.h"
-#include "io/scene_file.h"
+#include "io/placement.h"
+#include "io/polygon_triangles.h"
 
 #include <Eigen/Geometry>
 
@@ -32,16 +30,10 @@ constexpr std::size_t kNone = ~std::size_t{0};
 // Numbers read from accessors, each reading counted: positions and indices of the largest mesh that
 // can be shown are 3 * 2^25.
 constexpr std::size_t kMaxNumbers = std::size_t{1} << 27;
-// What a primitive, or a joint of a skin, costs without its numbers.
+// What a primitive costs without its numbers.
 constexpr std::size_t kPrimitive = 32;
 // Of decimal numbers, and of the few products and the square root that make a matrix of them.
 constexpr double kEntryError = 0x1p-50;
-
-// A mesh as its accessors give it, with the weights of its morph targets applied.
-struct Primitive {
-  TriangleMesh mesh;
-  const Json* attributes = nullptr;
-};
 
 struct Node {
   bool is_shown = false;
@@ -81,17 +73,13 @@ class GltfReader {
       const Json& entry = document_.item("nodes", node);
       const std::optional<std::uint64_t> mesh = document_.index(entry, "mesh");
       if (!mesh) continue;
-      const std::optional<std::uint64_t> skin = document_.index(entry, "skin");
-      const std::vector<Affine> chain = skin ? std::vector<Affine>() : chain_of(node);
-      for (Primitive primitive : primitives_of(*mesh, entry)) {
-        if (skin) {
-          bend(primitive, document_.item("skins", *skin));
-        } else {
-          budget_.take(primitive.mesh);
-          budget_.take_moves(primitive.mesh.vertices.size(), chain.size());
-          place(primitive.mesh, chain, 0.0, kEntryError);
-        }
-        append(result_, primitive.mesh, subject_);
+      if (entry.contains("skin")) document_.fail("a mesh with a skin, which is not supported");
+      const std::vector<Affine> chain = chain_of(node);
+      for (TriangleMesh part : primitives_of(*mesh)) {
+        budget_.take(part);
+        budget_.take_moves(part.vertices.size(), chain.size());
+        place(part, chain, 0.0, kEntryError);
+        append(result_, part, subject_);
       }
     }
     return std::move(result_);
@@ -134,7 +122,6 @@ class GltfReader {
   // The transforms of a node and of those above it, from the root down.
   std::vector<Affine> chain_of(std::size_t node) const {
     std::vector<Affine> chain;
-    if (!nodes_[node].is_shown) document_.fail("a joint of a skin is not in the scene");
     for (; node != kNone; node = nodes_[node].parent) {
       node = nodes_[node].moved_by;
       if (nodes_[node].transform) chain.push_back(*nodes_[node].transform);
@@ -182,81 +169,47 @@ class GltfReader {
     return *result;
   }
 
-  // Read once however often it is shown, but for nodes with weights of their own.
-  const std::vector<Primitive>& primitives_of(std::uint64_t index, const Json& node) {
-    const Json& mesh = document_.item("meshes", index);
-    const std::vector<double> weights = document_.numbers(node, "weights");
-    if (!weights.empty()) return morphed_ = read_primitives(mesh, weights);
+  // Read once however often it is shown.
+  const std::vector<TriangleMesh>& primitives_of(std::uint64_t index) {
     const auto [it, is_new] = meshes_.try_emplace(index);
-    if (is_new) it->second = read_primitives(mesh, document_.numbers(mesh, "weights"));
-    return it->second;
-  }
-
-  std::vector<Primitive> read_primitives(const Json& mesh, std::span<const double> weights) {
-    std::vector<Primitive> result;
-    for (const Json& primitive : document_.list(mesh, "primitives")) {
+    if (!is_new) return it->second;
+    for (const Json& primitive : document_.list(document_.item("meshes", index), "primitives")) {
       budget_.take_steps(kPrimitive);
       const std::uint64_t mode = document_.whole(primitive, "mode", kTriangles);
       if (mode < kTriangles) continue;  // points and lines
       if (mode > kTriangleFan) document_.fail("an unknown kind of primitive");
-      Primitive& made = result.emplace_back();
-      made.attributes = document_.member(primitive, "attributes");
-      if (made.attributes == nullptr) document_.fail("a mesh without positions");
-      add_vertices(primitive, weights, made);
-      add_triangles(primitive, mode, made.mesh);
-      // Parts often share one long list of vertices; joints are given for all of them.
-      if (!made.attributes->contains("JOINTS_0")) remove_unused_vertices(made.mesh);
-    }
-    return result;
-  }
-
-  GltfValues positions(const Json& attributes, bool is_signed) {
-    const std::optional<std::uint64_t> accessor = document_.index(attributes, "POSITION");
-    if (!accessor) document_.fail("a mesh without positions");
-    const bool is_quantized = document_.is_quantized();
-    return accessors_.read(*accessor, {.type = "VEC3",
-                                       .is_float_allowed = true,
-                                       .is_whole_allowed = is_quantized,
-                                       .is_normalized_allowed = is_quantized,
-                                       .is_signed_allowed = is_quantized && is_signed});
-  }
-
-  void add_vertices(const Json& primitive, std::span<const double> weights, Primitive& made) {
-    const GltfValues base = positions(*made.attributes, true);
-    const Json& targets = document_.list(primitive, "targets");
-    if (!weights.empty() && weights.size() != targets.size()) {
-      document_.fail("a mesh has not as many weights as morph targets");
-    }
-    std::vector<double> sum = base.numbers;
-    std::vector<double> size(sum.size());  // of all that was added
-    std::transform(sum.begin(), sum.end(), size.begin(), [](double x) { return std::abs(x); });
-    std::size_t added = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (weights[i] == 0.0 || !targets[i].contains("POSITION")) continue;
-      const GltfValues change = positions(targets[i], true);
-      if (change.numbers.size() != sum.size()) document_.fail("a morph target of another size");
-      for (std::size_t k = 0; k < sum.size(); ++k) {
-        sum[k] += weights[i] * change.numbers[k];
-        size[k] += std::abs(weights[i] * change.numbers[k]);
+      if (!document_.list(primitive, "targets").empty()) {
+        document_.fail("a mesh with morph targets, which are not supported");
       }
-      ++added;
+      TriangleMesh& made = it->second.emplace_back();
+      add_vertices(primitive, made);
+      add_triangles(primitive, mode, made);
+      remove_unused_vertices(made);  // parts often share one long list of vertices
     }
-    // Each term errs by three roundings (normalised number, decimal weight, product), and each
-    // addition by one of all that was added; twice that is charged.
-    const double terms = (base.is_exact ? 0.0 : 3.0) + 4.0 * static_cast<double>(added);
-    made.mesh.vertex_error =
-        rounding_distance(*std::max_element(size.begin(), size.end()), 2.0 * terms * kUnitRoundoff);
-    made.mesh.vertices.reserve(sum.size() / 3);
-    for (std::size_t k = 0; k + 2 < sum.size(); k += 3) {
-      made.mesh.vertices.emplace_back(sum[k], sum[k + 1], sum[k + 2]);
+    return it->second;
+  }
+
+  void add_vertices(const Json& primitive, TriangleMesh& mesh) {
+    const Json* const attributes = document_.member(primitive, "attributes");
+    const auto accessor =
+        attributes == nullptr ? std::nullopt : document_.index(*attributes, "POSITION");
+    if (!accessor) document_.fail("a mesh without positions");
+    const GltfValues values = accessors_.read(
+        *accessor, document_.is_quantized() ? GltfUse::kQuantizedPositions : GltfUse::kPositions);
+    mesh.vertices.reserve(values.count());
+    for (std::size_t k = 0; k < values.numbers.size(); k += 3) {
+      mesh.vertices.emplace_back(values.numbers[k], values.numbers[k + 1], values.numbers[k + 2]);
+    }
+    // A normalised number errs by less than three roundings; twice that is charged.
+    if (!values.is_exact) {
+      mesh.vertex_error = rounding_distance(largest_coordinate(mesh), 6.0 * kUnitRoundoff);
     }
   }
 
   void add_triangles(const Json& primitive, std::uint64_t mode, TriangleMesh& mesh) {
     std::vector<std::int64_t> corners;
     if (const auto accessor = document_.index(primitive, "indices")) {
-      const GltfValues list =
-          accessors_.read(*accessor, {.type = "SCALAR", .is_whole_allowed = true});
+      const GltfValues list = accessors_.read(*accessor, GltfUse::kIndices);
       corners.assign(list.numbers.begin(), list.numbers.end());
     } else {
       for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -276,79 +229,13 @@ class GltfReader {
     }
   }
 
-  // Moves the vertices with the joints of the skin, in place of the node's own transform (section
-  // 3.7.3): v = sum over joints of weight * joint * inverse bind matrix * v.
-  void bend(Primitive& primitive, const Json& skin) {
-    const std::vector<std::uint64_t> joints = document_.indices(skin, "joints");
-    budget_.take(primitive.mesh);
-    budget_.take_steps(kPrimitive * joints.size());
-    std::vector<Affine> inverse_bind(joints.size());
-    if (const auto accessor = document_.index(skin, "inverseBindMatrices")) {
-      const GltfValues matrices =
-          accessors_.read(*accessor, {.type = "MAT4", .is_float_allowed = true});
-      if (matrices.count() < joints.size()) document_.fail("a skin of too few matrices");
-      for (std::size_t j = 0; j < joints.size(); ++j) {
-        inverse_bind[j] = affine_of(std::span(matrices.numbers).subspan(16 * j, 16));
-      }
-    }
-    SkinnedPart part(primitive.mesh, kEntryError);
-    const std::vector<std::vector<JointWeight>> weights = joint_weights(primitive, joints.size());
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      document_.item("nodes", joints[j]);
-      if (weights[j].empty()) continue;
-      std::vector<Affine> chain = chain_of(static_cast<std::size_t>(joints[j]));
-      chain.push_back(inverse_bind[j]);
-      budget_.take_moves(weights[j].size(), chain.size());
-      part.add(chain, weights[j]);
-    }
-    primitive.mesh = part.take();
-  }
-
-  // Of each joint the vertices that it moves.
-  std::vector<std::vector<JointWeight>> joint_weights(const Primitive& primitive,
-                                                      std::size_t joints) {
-    const std::size_t vertices = primitive.mesh.vertices.size();
-    std::vector<std::vector<JointWeight>> result(joints);
-    std::vector<double> sums(vertices, 0.0);
-    for (int set = 0;; ++set) {
-      const std::string number = std::to_string(set);
-      const auto of = document_.index(*primitive.attributes, ("JOINTS_" + number).c_str());
-      const auto by = document_.index(*primitive.attributes, ("WEIGHTS_" + number).c_str());
-      if (!of || !by) {
-        if (set == 0 || of || by) document_.fail("a skinned mesh without joints or weights");
-        break;
-      }
-      const GltfValues joint = accessors_.read(*of, {.type = "VEC4", .is_whole_allowed = true});
-      const GltfValues weight = accessors_.read(
-          *by, {.type = "VEC4", .is_float_allowed = true, .is_normalized_allowed = true});
-      if (joint.count() != vertices || weight.count() != vertices) {
-        document_.fail("a skinned mesh without joints or weights of every vertex");
-      }
-      for (std::size_t k = 0; k < 4 * vertices; ++k) {
-        if (weight.numbers[k] == 0.0) continue;
-        if (!(weight.numbers[k] > 0.0) || joint.numbers[k] >= static_cast<double>(joints)) {
-          document_.fail("a weight or joint of a skinned mesh is out of range");
-        }
-        result[static_cast<std::size_t>(joint.numbers[k])].push_back({k / 4, weight.numbers[k]});
-        sums[k / 4] += weight.numbers[k];
-      }
-    }
-    for (const double sum : sums) {
-      if (!(std::abs(sum - 1.0) <= kWeightTolerance)) {
-        document_.fail("the weights of a skinned vertex do not add up to 1");
-      }
-    }
-    return result;
-  }
-
   const std::string& subject_;
   GltfDocument document_;
   SceneBudget budget_;
   GltfAccessors accessors_;
   std::vector<std::size_t> shown_;
   std::vector<Node> nodes_;
-  std::map<std::uint64_t, std::vector<Primitive>> meshes_;
-  std::vector<Primitive> morphed_;  // of the node shown last that has weights
+  std::map<std::uint64_t, std::vector<TriangleMesh>> meshes_;
   TriangleMesh result_;
 };
 

@@ -14,7 +14,7 @@ endforeach()
 # Private dependencies of a shared library are its own affair; a static one hands them on.
 get_target_property(library_type spherule_base TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
-  set(SPHERULE_IO_PACKAGES "EXPAT;tinyxml2;ZLIB")
+  set(SPHERULE_IO_PACKAGES "tinyxml2;ZLIB")
   set(SPHERULE_SIMPLIFIER_PACKAGES "TBB")
   set(SPHERULE_THREADS_PACKAGES "TBB")
   set(SPHERULE_ROBOT_PACKAGES "Threads;tinyxml2;yaml-cpp")

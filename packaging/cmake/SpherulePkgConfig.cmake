@@ -5,7 +5,7 @@
 # What pkg-config calls the packages of some targets. FCL and OMPL are not among them: theirs ask for
 # an older C++, which would take the place of ours. All others are linked by the names of their files.
 set(SPHERULE_PKGCONFIG_NAMES
-    "Eigen3::Eigen=eigen3" "EXPAT::EXPAT=expat" "TBB::tbb=tbb"
+    "Eigen3::Eigen=eigen3" "TBB::tbb=tbb"
     "ZLIB::ZLIB=zlib" "tinyxml2::tinyxml2=tinyxml2" "yaml-cpp=yaml-cpp"
     "Qhull::qhull_r=qhull_r")
 

@@ -23,7 +23,6 @@ class Spherule(ConanFile):
     default_options = {"shared": False}
     requires = (
         "eigen/3.4.0",
-        "expat/[>=2.5 <3]",
         "nlohmann_json/3.11.3",
         "onetbb/2021.12.0",
         "tinyxml2/10.0.0",

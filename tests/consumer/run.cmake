@@ -12,7 +12,7 @@ run(${CMAKE_COMMAND} --install ${PROJECT_BUILD} --prefix ${WORK}/prefix)
 set(options "")
 if(FORBIDDEN)
   # find_package for these fails even where they are installed.
-  foreach(package assimp EXPAT TBB ZLIB tinyxml2)
+  foreach(package assimp TBB ZLIB tinyxml2)
     list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
 endif()

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/weld_within.h"
-
 #include "base/error.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"
+#include "io/placement.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/zoo.h"

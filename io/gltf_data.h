@@ -2,16 +2,22 @@
 #pragma once
 
 #include "base/json.h"
+#include "io/placement.h"
 
 #include <nlohmann/json.hpp>
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <list>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-// The JSON of a glTF or GLB file (Khronos, "glTF 2.0 Specification"), with checked access.
+// The JSON and the numbers of a glTF or GLB file (Khronos, "glTF 2.0 Specification"), with checked
+// access.
 
 namespace spherule::internal {
 
@@ -56,6 +62,56 @@ class GltfDocument {
   std::optional<std::string_view> binary_chunk_;
   std::optional<JsonDocument<Json>> document_;
   bool is_quantized_ = false;
+};
+
+// Values of an accessor, element by element.
+struct GltfValues {
+  std::vector<double> numbers;
+  std::size_t components = 1;  // of an element
+  bool is_exact = true;        // false for normalised whole numbers, of which each is rounded
+
+  std::size_t count() const { return numbers.size() / components; }
+};
+
+// What an accessor is read for, which decides on the type of its elements and of their components.
+enum class GltfUse {
+  kPositions,           // VEC3 of floats
+  kQuantizedPositions,  // VEC3, of whole numbers too
+  kIndices,             // SCALAR of whole numbers without a sign
+};
+
+// Reads buffers and the accessors on them. Every offset, stride and count is checked against the
+// bytes that are there. Buffers come from the binary chunk of a GLB file, from data URIs, and from
+// files in the folder of the glTF file or below it; others are refused.
+class GltfAccessors {
+ public:
+  // All have to outlive the object.
+  GltfAccessors(const GltfDocument& document, const std::filesystem::path& file,
+                SceneBudget& budget);
+
+  GltfValues read(std::uint64_t accessor, GltfUse use);
+
+ private:
+  // Where consecutive elements are.
+  struct Layout {
+    std::string_view bytes;
+    std::size_t stride = 0;
+  };
+
+  std::string_view buffer(std::uint64_t index);
+  // The bytes of a URI, which stay with the object; a file is read once.
+  std::string_view load(const std::string& uri);
+  Layout layout(const GltfDocument::Json& place, std::size_t size, std::size_t count,
+                bool may_stride);
+  void add_sparse(const GltfDocument::Json& sparse, std::uint64_t type, std::size_t count,
+                  bool is_normalized, GltfValues& values);
+
+  const GltfDocument& document_;
+  const std::filesystem::path& file_;
+  SceneBudget& budget_;
+  std::map<std::uint64_t, std::string_view> buffers_;  // by number
+  std::map<std::string, std::string> files_;           // by URI
+  std::list<std::string> decoded_;                     // of data URIs
 };
 
 }  // namespace spherule::internal

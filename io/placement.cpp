@@ -1,18 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/placed_part.h"
+#include "io/placement.h"
 
+#include "base/error.h"
+#include "base/rounding.h"
 #include "geometry/vertex_rounding.h"
-#include "io/mesh_readers.h"
+#include "geometry/weld.h"
+#include "io/polygon_triangles.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace spherule::internal {
+
+void SceneBudget::take(const TriangleMesh& mesh) {
+  shown_ += mesh.vertices.size() + mesh.triangles.size();
+  if (shown_ > std::size_t{1} << 25) {
+    throw Error(subject_, "shows more than 2^25 vertices and triangles");
+  }
+}
+
+void SceneBudget::take_moves(std::size_t vertices, std::size_t transforms) {
+  moved_ += (vertices + 1) * transforms;
+  if (moved_ > std::size_t{1} << 29) {
+    throw Error(subject_, "applies transforms to vertices more than 2^29 times");
+  }
+}
+
+void SceneBudget::check_depth(std::size_t transforms) const {
+  if (transforms > 512) throw Error(subject_, "a node under more than 512 transforms");
+}
+
+void SceneBudget::take_node() {
+  if (++nodes_ > std::size_t{1} << 18) {
+    throw Error(subject_, "shows more than 2^18 nodes or objects");
+  }
+}
+
+void SceneBudget::take_steps(std::size_t count) {
+  if (count > steps_) {
+    throw Error(subject_, "is too large, or refers to its numbers and elements too many times");
+  }
+  steps_ -= count;
+}
 
 Affine::Affine(const Eigen::Matrix3d& of_linear, const Eigen::Vector3d& of_offset)
     : linear(of_linear), offset(of_offset), gain(linear.operatorNorm() * (1.0 + 0x1p-40)) {}
@@ -45,42 +79,6 @@ void place(TriangleMesh& part, std::span<const Affine> chain, double coordinate_
   part.vertex_error = error * (1.0 + 0x1p-40);
 }
 
-SkinnedPart::SkinnedPart(const TriangleMesh& rest, double entry_error)
-    : rest_(rest), entry_error_(entry_error), sums_(rest.vertices.size()) {}
-
-void SkinnedPart::add(std::span<const Affine> chain, std::span<const JointWeight> weights) {
-  TriangleMesh moved;
-  moved.vertices.reserve(weights.size());
-  for (const JointWeight& part : weights) moved.vertices.push_back(rest_.vertices[part.vertex]);
-  moved.vertex_error = rest_.vertex_error;
-  place(moved, chain, 0.0, entry_error_);
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const Eigen::Vector3d& to = moved.vertices[i];
-    Sum& sum = sums_[weights[i].vertex];
-    sum.position += weights[i].weight * to;
-    sum.size += weights[i].weight * to.norm();
-    sum.error += weights[i].weight * moved.vertex_error;
-    ++sum.terms;
-  }
-}
-
-// Of n terms each errs by the rounding of its weight, a decimal, and of the product, and passes
-// through at most n additions: together less than (n + 3) u of the sizes of all, u = 2^-53. Twice
-// that holds the rounding of these sums of sizes and errors, too.
-TriangleMesh SkinnedPart::take() {
-  TriangleMesh result;
-  result.triangles = rest_.triangles;
-  result.vertices.reserve(sums_.size());
-  for (const Sum& sum : sums_) {
-    const double terms = static_cast<double>(sum.terms) + 3.0;
-    const double upward = 1.0 + terms * 0x1p-52;
-    result.vertices.push_back(sum.position);
-    result.vertex_error =
-        std::max(result.vertex_error, (sum.error + terms * 0x1p-52 * sum.size) * upward);
-  }
-  return result;
-}
-
 void append(TriangleMesh& mesh, const TriangleMesh& part, const std::string& subject) {
   const auto first = static_cast<std::int64_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
@@ -89,6 +87,28 @@ void append(TriangleMesh& mesh, const TriangleMesh& part, const std::string& sub
     add_polygon(mesh, corners, mesh.vertices.size(), subject);
   }
   mesh.vertex_error = std::max(mesh.vertex_error, part.vertex_error);
+}
+
+TriangleMesh weld_within(const TriangleMesh& input, double tolerance) {
+  TriangleMesh mesh = weld(input);
+  if (tolerance == 0.0 || mesh.triangles.empty()) return mesh;
+  const std::vector<Eigen::Vector3d> places = mesh.vertices;
+  const PointGrid grid(places, tolerance);
+  std::vector<char> is_placed(places.size(), 0);
+  std::vector<std::uint32_t> near;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (is_placed[i] != 0) continue;
+    near.clear();
+    grid.find(places[i], tolerance, near);
+    for (const std::uint32_t k : near) {
+      if (is_placed[k] != 0 || distance_upper(places[i], places[k]) > tolerance) continue;
+      is_placed[k] = 1;
+      mesh.vertices[k] = places[i];
+    }
+    is_placed[i] = 1;
+  }
+  mesh.vertex_error = add_up(mesh.vertex_error, tolerance);
+  return weld(mesh);
 }
 
 }  // namespace spherule::internal
