@@ -146,7 +146,7 @@ const std::vector<Room>& rooms() {
        {{"nlohmann", "robot/formats/sphere_formats_json.cpp"},
         {"tinyxml2", "robot/formats/sphere_formats_xml.cpp"},
         {"yaml-cpp", "robot/formats/yaml_nodes.h"},
-        {"yaml-cpp", "robot/formats/yaml_nodes.cpp"}}},
+        {"yaml-cpp", "robot/formats/internal/yaml_nodes.cpp"}}},
       {"robot/pairs",
        {"spheretree", "spheretree/text", "collide", "robot/model", "robot/files"},
        {"Eigen"}},
