@@ -9,7 +9,6 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <variant>
@@ -41,46 +40,7 @@ bool is_control(std::uint32_t point) {
   return point < 0x20 || (point >= 0x7f && point < 0xa0) || (point & 0xfffe) == 0xfffe;
 }
 
-// Line breaks and marks that YAML reads as something else than a character of the text.
-bool is_yaml_special(std::uint32_t point) {
-  return point == 0x2028 || point == 0x2029 || point == 0xfeff;
-}
-
-// Whether a text can be nothing but a text to a reader of YAML 1.1 or 1.2: a letter, then letters,
-// digits and a few signs, and no word for a truth value, a number or nothing.
-bool is_plain(std::string_view text) {
-  const auto letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-  };
-  const auto inner = [&](char c) {
-    return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '/';
-  };
-  if (text.empty() || !(letter(text[0]) || (text[0] == '/' && text.size() > 1))) return false;
-  if (!std::all_of(text.begin(), text.end(), inner)) return false;
-  constexpr std::string_view kWords[] = {"true", "false", "yes",  "no",  "on", "off",
-                                         "y",    "n",     "null", "inf", "nan"};
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return std::find(std::begin(kWords), std::end(kWords), lower) == std::end(kWords);
-}
-
 }  // namespace
-
-std::optional<std::vector<double>> numbers_of(std::string_view text) {
-  std::vector<double> numbers;
-  for (const std::string_view word : words_of(text)) {
-    const std::optional<double> number = finite_number(word);
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
-std::optional<Eigen::Vector3d> vector_of(std::string_view text) {
-  const auto numbers = numbers_of(text);
-  if (!numbers || numbers->size() != 3) return std::nullopt;
-  return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-}
 
 std::string decimal(double value) {
   std::array<char, 512> buffer;  // the smallest double takes 327 characters, the largest 310
@@ -107,22 +67,29 @@ std::string fault_of_name(std::string_view name) {
   return {};
 }
 
-std::string yaml_text(std::string_view text) {
-  if (is_plain(text)) return std::string(text);
-  std::string quoted = "\"";
+bool is_plain_yaml(std::string_view text) {
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  const auto inner = [&](char c) {
+    return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '/';
+  };
+  if (text.empty() || !(letter(text[0]) || (text[0] == '/' && text.size() > 1))) return false;
+  if (!std::all_of(text.begin(), text.end(), inner)) return false;
+  constexpr std::string_view kWords[] = {"true", "false", "yes",  "no",  "on", "off",
+                                         "y",    "n",     "null", "inf", "nan"};
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return std::find(std::begin(kWords), std::end(kWords), lower) == std::end(kWords);
+}
+
+bool is_utf8(std::string_view text) {
   while (!text.empty()) {
-    const auto [point, length] = code_point(text);
-    if (length > 0 && (is_yaml_special(point) || is_control(point))) {
-      std::array<char, 16> escape;
-      std::snprintf(escape.data(), escape.size(), "\\U%08X", static_cast<unsigned>(point));
-      quoted += escape.data();
-    } else {
-      if (point == '"' || point == '\\') quoted += '\\';
-      quoted += text.substr(0, std::max<std::size_t>(length, 1));  // what is not UTF-8 stays so
-    }
-    text.remove_prefix(std::max<std::size_t>(length, 1));
+    const std::size_t length = code_point(text).second;
+    if (length == 0) return false;
+    text.remove_prefix(length);
   }
-  return quoted + "\"";
+  return true;
 }
 
 namespace {

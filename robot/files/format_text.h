@@ -10,19 +10,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace spherule::internal {
-
-// The numbers of a text, apart by white space; nothing if a part of it is no number.
-std::optional<std::vector<double>> numbers_of(std::string_view text);
-
-// The same for three numbers.
-std::optional<Eigen::Vector3d> vector_of(std::string_view text);
 
 // A finite number as a decimal with a point and without an exponent (which YAML 1.1 reads as a
 // text where it has no point), the shortest that reads back to the same double.
@@ -35,8 +28,11 @@ std::string decimals(const Eigen::Vector3d& point, std::string_view separator);
 // characters.
 std::string fault_of_name(std::string_view name);
 
-// A text as YAML, in double quotes where it is not plainly a text to every reader.
-std::string yaml_text(std::string_view text);
+// Whether a text can be nothing but a text to a reader of YAML 1.1 or 1.2 without quotes: a letter,
+// then letters, digits and a few signs, and no word for a truth value, a number or nothing.
+bool is_plain_yaml(std::string_view text);
+
+bool is_utf8(std::string_view text);
 
 // The lines of a text table that have something on them: words apart by blanks, tabs, commas or
 // semicolons; what follows a # is no part of a line. An empty cell, between two commas, is an empty

@@ -2,25 +2,114 @@
 #include "robot/files/urdf.h"
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/text.h"
-#include "robot/files/mesh_path.h"
+#include "robot/files/urdf_files.h"
 #include "robot/files/xml_file.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 namespace spherule {
 namespace {
 
-using internal::link_at;
 using internal::XmlElement;
+
+// The <link> and <joint> elements of a URDF file depth first: the root link, then for each joint
+// below a link, in the order of the file, what hangs on it. Link i + 1 is the child of joint i.
+struct UrdfTree {
+  std::vector<XmlElement> links;
+  std::vector<XmlElement> joints;
+};
+
+// The name of the link at an end of a joint, "parent" or "child".
+std::string link_at(const XmlElement& joint, std::string_view end) {
+  return joint.needed_child(end).needed("link");
+}
+
+// Throws Error for names that are missing or not unique, a joint between links that are not there,
+// and links and joints that are no tree.
+class TreeGatherer {
+ public:
+  explicit TreeGatherer(const XmlElement& robot) : robot_(robot) {
+    for (const XmlElement& link : robot.children("link")) {
+      const std::string name = link.needed("name");
+      if (!links_.emplace(name, link).second) link.refuse("link '" + name + "' is not unique");
+    }
+    std::set<std::string> names;
+    for (const XmlElement& joint : robot.children("joint")) {
+      const std::string name = joint.needed("name");
+      if (!names.insert(name).second) joint.refuse("joint '" + name + "' is not unique");
+      add(joint);
+    }
+  }
+
+  UrdfTree tree() const {
+    UrdfTree result{.links = {root()}, .joints = {}};
+    std::vector<XmlElement> waiting;
+    for (;;) {
+      const auto below = below_.find(result.links.back().needed("name"));
+      if (below != below_.end()) {
+        waiting.insert(waiting.end(), below->second.rbegin(), below->second.rend());
+      }
+      if (waiting.empty()) break;
+      result.joints.push_back(waiting.back());
+      waiting.pop_back();
+      result.links.push_back(links_.at(link_at(result.joints.back(), "child")));
+    }
+    if (result.links.size() < links_.size()) refuse_ring(result.links);
+    return result;
+  }
+
+ private:
+  void add(const XmlElement& joint) {
+    for (const std::string_view end : {"parent", "child"}) {
+      const std::string link = link_at(joint, end);
+      if (!links_.contains(link)) joint.needed_child(end).refuse("link '" + link + "' not found");
+    }
+    const std::string child = link_at(joint, "child");
+    const auto [other, is_first] = above_.emplace(child, joint);
+    if (!is_first) {
+      joint.refuse("link '" + child + "' is below two joints, this one and '" +
+                   other->second.needed("name") + "'");
+    }
+    below_[link_at(joint, "parent")].push_back(joint);
+  }
+
+  XmlElement root() const {
+    std::vector<XmlElement> roots;
+    for (const XmlElement& link : robot_.children("link")) {
+      const std::string name = link.needed("name");
+      if (above_.contains(name)) continue;
+      if (!roots.empty()) {
+        link.refuse("it is a root, below no joint, as is link '" + roots[0].needed("name") + "'");
+      }
+      roots.push_back(link);
+    }
+    if (links_.empty()) robot_.refuse("it has no <link>");
+    if (roots.empty()) refuse_ring({});
+    return roots[0];
+  }
+
+  // `reached` are the links at and below the root. Upwards from any other there is no end.
+  [[noreturn]] void refuse_ring(const std::vector<XmlElement>& reached) const {
+    std::map<std::string, XmlElement> others = links_;
+    for (const XmlElement& link : reached) others.erase(link.needed("name"));
+    std::string at = others.begin()->first;
+    std::set<std::string> way;
+    while (way.insert(at).second) at = link_at(above_.at(at), "parent");
+    above_.at(at).refuse("link '" + at + "' is above itself");
+  }
+
+  XmlElement robot_;
+  std::map<std::string, XmlElement> links_{};
+  std::map<std::string, XmlElement> above_{};               // the joint above a link
+  std::map<std::string, std::vector<XmlElement>> below_{};  // those below it
+};
 
 // What `make` returns; its errors get the place of the element.
 template <class Make>
@@ -208,7 +297,7 @@ RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions&
   const auto version = robot.attribute("version");
   if (version && *version != "1.0") robot.refuse("only version 1.0 of URDF can be read");
   refuse_xacro(robot);
-  const internal::UrdfTree tree = internal::urdf_tree(robot);
+  const UrdfTree tree = TreeGatherer(robot).tree();
   RobotDescription result{.name = robot.needed("name"),
                           .model = RobotModel(tree.links.front().needed("name"))};
   for (const XmlElement& element : tree.joints) {
@@ -224,90 +313,3 @@ RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions&
 }
 
 }  // namespace spherule
-
-namespace spherule::internal {
-namespace {
-
-namespace fs = std::filesystem;
-
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
-// As the package.xml of the folder says; empty where there is none that can be read.
-std::string package_name(const fs::path& folder) {
-  const fs::path manifest = folder / "package.xml";
-  if (!is_file(manifest)) return {};
-  try {
-    const XmlFile file(manifest, "package");
-    const auto element = file.root().child("name");
-    return element ? std::string(element->text()) : std::string();
-  } catch (const Error&) {
-    return {};
-  }
-}
-
-// The file `rest` below a folder: of that name or, as in a URL, of the name that it escapes. A
-// percent sign that begins no escape stays.
-fs::path below(const fs::path& folder, std::string_view rest) {
-  const fs::path path = folder / rest;
-  const fs::path meant = folder / percent_decoded(rest).text;
-  return !is_file(path) && is_file(meant) ? meant : path;
-}
-
-}  // namespace
-
-MeshPaths::MeshPaths(const fs::path& urdf, const UrdfOptions& options)
-    : folder_(absolute_path(urdf).parent_path()), packages_(options.packages) {}
-
-fs::path MeshPaths::package_root(const std::string& package) {
-  if (!missing_.contains(package)) {
-    std::size_t height = 0;
-    for (fs::path at = folder_;; at = at.parent_path()) {
-      if (height == above_.size()) above_.push_back(package_name(at));
-      if (above_[height++] == package) return at;
-      if (package_name(at / package) == package) return at / package;
-      if (at == at.parent_path()) break;
-    }
-    missing_.insert(package);
-  }
-  throw Error("package://" + package,
-              "the folder of this package is not given (--package " + package +
-                  "=FOLDER, UrdfOptions::packages), and no package.xml of that name stands in a "
-                  "folder above the URDF file or beside one of them");
-}
-
-fs::path MeshPaths::in_package(const std::string& name, std::string_view rest) {
-  const std::size_t begin = std::min(rest.find_first_not_of('/'), rest.size());
-  const std::size_t slash = std::min(rest.find('/', begin), rest.size());
-  const std::string package(rest.substr(begin, slash - begin));
-  if (package.empty()) throw Error(name, "it names no package");
-  auto root = packages_.find(package);
-  if (root == packages_.end()) root = packages_.emplace(package, package_root(package)).first;
-  return below(root->second, rest.substr(std::min(slash + 1, rest.size())));
-}
-
-fs::path MeshPaths::find(const std::string& name) {
-  const MeshName given = mesh_name(name);
-  fs::path path;
-  switch (given.kind) {
-    case MeshName::Kind::kPackage:
-      path = in_package(name, given.rest);
-      break;
-    case MeshName::Kind::kFile:
-      path = below(folder_, given.rest);
-      break;
-    case MeshName::Kind::kPath:
-      path = folder_ / given.rest;
-      break;
-    case MeshName::Kind::kOtherScheme:
-      throw Error(name, "only package:// and file:// can be followed");
-  }
-  path = path.lexically_normal();
-  if (is_file(path)) return path;
-  if (name.find("$(") != name.npos || name.find("${") != name.npos) throw Error(name, kIsForXacro);
-  throw Error(name, "there is no such file: " + path.string());
-}
-
-}  // namespace spherule::internal

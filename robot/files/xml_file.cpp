@@ -5,42 +5,15 @@
 #include "base/files.h"
 #include "base/parser_fault.h"
 #include "base/text.h"
+#include "robot/files/format_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <map>
-#include <set>
-#include <sys/wait.h>
 #include <tinyxml2.h>
-#include <unistd.h>
 #include <utility>
 
 namespace spherule::internal {
 namespace {
-
-// By the lengths of its sequences; forms that are too long and surrogates do no harm here.
-bool is_utf8(std::string_view text) {
-  std::size_t follow = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (follow > 0) {
-      if ((byte & 0xC0U) != 0x80U) return false;
-      --follow;
-    } else if (byte >= 0x80U) {
-      if ((byte & 0xE0U) == 0xC0U) {
-        follow = 1;
-      } else if ((byte & 0xF0U) == 0xE0U) {
-        follow = 2;
-      } else if ((byte & 0xF8U) == 0xF0U) {
-        follow = 3;
-      } else {
-        return false;
-      }
-    }
-  }
-  return follow == 0;
-}
 
 // Why a document is refused whose root is this one; people have robots in other formats, too.
 std::string wrong_root(const std::string& root, std::string_view wanted) {
@@ -61,12 +34,6 @@ std::string_view XmlElement::tag() const {
 std::string_view XmlElement::text() const {
   const char* const text = element_->GetText();
   return text == nullptr ? std::string_view() : text;
-}
-
-std::string XmlElement::printed() const {
-  tinyxml2::XMLPrinter printer;
-  element_->Accept(&printer);
-  return printer.CStr();
 }
 
 std::vector<XmlElement> XmlElement::children(std::string_view tag) const {
@@ -205,6 +172,12 @@ XmlElement XmlFile::root() const {
   return {*document_->RootElement(), name_};
 }
 
+std::string XmlFile::printed() const {
+  tinyxml2::XMLPrinter printer;
+  document_->Print(&printer);
+  return printer.CStr();
+}
+
 std::string xml_escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -226,118 +199,6 @@ std::string xml_escaped(std::string_view text) {
     }
   }
   return result;
-}
-
-namespace {
-
-class Gatherer {
- public:
-  explicit Gatherer(const XmlElement& robot) : robot_(robot) {
-    for (const XmlElement& link : robot.children("link")) {
-      const std::string name = link.needed("name");
-      if (!links_.emplace(name, link).second) link.refuse("link '" + name + "' is not unique");
-    }
-    std::set<std::string> names;
-    for (const XmlElement& joint : robot.children("joint")) {
-      const std::string name = joint.needed("name");
-      if (!names.insert(name).second) joint.refuse("joint '" + name + "' is not unique");
-      add(joint);
-    }
-  }
-
-  UrdfTree tree() const {
-    UrdfTree result{.links = {root()}, .joints = {}};
-    std::vector<XmlElement> waiting;
-    for (;;) {
-      const auto below = below_.find(result.links.back().needed("name"));
-      if (below != below_.end()) {
-        waiting.insert(waiting.end(), below->second.rbegin(), below->second.rend());
-      }
-      if (waiting.empty()) break;
-      result.joints.push_back(waiting.back());
-      waiting.pop_back();
-      result.links.push_back(links_.at(link_at(result.joints.back(), "child")));
-    }
-    if (result.links.size() < links_.size()) refuse_ring(result.links);
-    return result;
-  }
-
- private:
-  void add(const XmlElement& joint) {
-    for (const std::string_view end : {"parent", "child"}) {
-      const std::string link = link_at(joint, end);
-      if (!links_.contains(link)) joint.needed_child(end).refuse("link '" + link + "' not found");
-    }
-    const std::string child = link_at(joint, "child");
-    const auto [other, is_first] = above_.emplace(child, joint);
-    if (!is_first) {
-      joint.refuse("link '" + child + "' is below two joints, this one and '" +
-                   other->second.needed("name") + "'");
-    }
-    below_[link_at(joint, "parent")].push_back(joint);
-  }
-
-  XmlElement root() const {
-    std::vector<XmlElement> roots;
-    for (const XmlElement& link : robot_.children("link")) {
-      const std::string name = link.needed("name");
-      if (above_.contains(name)) continue;
-      if (!roots.empty()) {
-        link.refuse("it is a root, below no joint, as is link '" + roots[0].needed("name") + "'");
-      }
-      roots.push_back(link);
-    }
-    if (links_.empty()) robot_.refuse("it has no <link>");
-    if (roots.empty()) refuse_ring({});
-    return roots[0];
-  }
-
-  // `reached` are the links at and below the root. Upwards from any other there is no end.
-  [[noreturn]] void refuse_ring(const std::vector<XmlElement>& reached) const {
-    std::map<std::string, XmlElement> others = links_;
-    for (const XmlElement& link : reached) others.erase(link.needed("name"));
-    std::string at = others.begin()->first;
-    std::set<std::string> way;
-    while (way.insert(at).second) at = link_at(above_.at(at), "parent");
-    above_.at(at).refuse("link '" + at + "' is above itself");
-  }
-
-  XmlElement robot_;
-  std::map<std::string, XmlElement> links_{};
-  std::map<std::string, XmlElement> above_{};               // the joint above a link
-  std::map<std::string, std::vector<XmlElement>> below_{};  // those below it
-};
-
-}  // namespace
-
-UrdfTree urdf_tree(const XmlElement& robot) {
-  return Gatherer(robot).tree();
-}
-
-std::string link_at(const XmlElement& joint, std::string_view end) {
-  return joint.needed_child(end).needed("link");
-}
-
-bool is_xacro(const std::filesystem::path& path) {
-  return path.extension() == ".xacro";
-}
-
-std::string urdf_text(const std::filesystem::path& path) {
-  if (!is_xacro(path)) return read_file(path);
-  const std::string file = path.string();
-  // So that a name that begins with a dash is no option.
-  const std::array<std::string, 1> arguments = {path.is_relative() ? "./" + file : file};
-  ProgramOutput output = run_program("xacro", arguments, STDOUT_FILENO);
-  if (!output.not_started.empty()) {
-    throw Error(file, "needs the program xacro, which makes a URDF of it and cannot be run: " +
-                          output.not_started);
-  }
-  if (WIFSIGNALED(output.status)) throw Error(file, "xacro was ended by a signal");
-  if (WEXITSTATUS(output.status) != 0) {
-    throw Error(file, "xacro makes no URDF of it (exit code " +
-                          std::to_string(WEXITSTATUS(output.status)) + ")");
-  }
-  return std::move(output.bytes);
 }
 
 }  // namespace spherule::internal

@@ -30,7 +30,6 @@ class XmlElement {
 
   std::string_view tag() const;
   std::string_view text() const;  // up to the first element in it
-  std::string printed() const;    // with all that is in it
   // Of this tag, or all; in the order of the file.
   std::vector<XmlElement> children(std::string_view tag = {}) const;
   // The only child of this tag, which may be missing, or is needed.
@@ -71,6 +70,9 @@ class XmlFile {
   ~XmlFile();
 
   XmlElement root() const;
+  // To be changed, and the text of what it has become; comments stay.
+  tinyxml2::XMLDocument& document() { return *document_; }
+  std::string printed() const;
 
  private:
   std::string name_;
@@ -79,31 +81,5 @@ class XmlFile {
 
 // As text, or as the value of an attribute.
 std::string xml_escaped(std::string_view text);
-
-// The <link> and <joint> elements of a URDF file depth first: the root link, then for each joint
-// below a link, in the order of the file, what hangs on it. Link i + 1 is the child of joint i.
-struct UrdfTree {
-  std::vector<XmlElement> links;
-  std::vector<XmlElement> joints;
-};
-
-// Throws Error for names that are missing or not unique, a joint between links that are not there,
-// and links and joints that are no tree.
-UrdfTree urdf_tree(const XmlElement& robot);
-
-// The name of the link at an end of a joint, "parent" or "child".
-std::string link_at(const XmlElement& joint, std::string_view end);
-
-// Why a file of another name is refused that holds what only that program understands.
-inline constexpr const char* kIsForXacro =
-    "this is for xacro, which makes a URDF of it: rename the file, so that it ends in .xacro";
-
-// Whether the name of the file says that it is one for the program `xacro`: it ends in .xacro.
-bool is_xacro(const std::filesystem::path& path);
-
-// The text of a URDF file; of one for xacro, what `xacro`, as the PATH has it, makes of it without
-// arguments. What xacro has to say goes to standard error. Throws Error, naming the file, where it
-// cannot be read, or there is no such program or it fails.
-std::string urdf_text(const std::filesystem::path& path);
 
 }  // namespace spherule::internal

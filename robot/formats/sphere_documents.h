@@ -11,7 +11,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -72,59 +71,32 @@ class SphereGatherer {
 Sphere moved_sphere(const Sphere& sphere, const Eigen::Vector3d& roll_pitch_yaw,
                     const Eigen::Vector3d& translation);
 
-// XML. The root element's children tell URDF from SRDF, which srdf.h reads.
+// XML. The root element's children tell URDF from SRDF.
 bool is_srdf(const std::filesystem::path& path);
 RobotSpheres read_sphere_urdf(const std::filesystem::path& path);
+RobotSpheres read_sphere_srdf(const std::filesystem::path& path);
 std::string sphere_urdf(const RobotSpheres& spheres, const SphereFileContext& context,
                         const std::filesystem::path& path);
+// A new file, or an existing one with other spheres, and with the pairs that it neither disables
+// nor enables yet; everything else stays.
 std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& context);
-// An SRDF with other spheres, and with the pairs that it neither disables nor enables yet; all
-// other bytes as they are. Throws Error where these do not read back as before, of a text that is
-// not well-formed XML.
-std::string kept_srdf(const RobotSpheres& spheres, const std::filesystem::path& original);
-// Its elements for pairs and spheres, each line indented and ended.
-std::string srdf_pairs(std::span<const DisabledPair> pairs, const std::string& indent);
-std::string srdf_spheres(std::span<const LinkSpheres> links, const std::string& indent);
 
 // YAML: cuRobo or XRDF.
 SphereFormatFile read_sphere_yaml(std::string_view text, const std::filesystem::path& path);
-// A file with other spheres of these links, and with the pairs that it does not ignore yet: all
-// other bytes as they are or, where its style does not allow that, written anew without its
-// comments. What it switches off stays, and so do the spheres of other links; those of a file
-// beside come into this one.
+// An existing file with other spheres of these links, and with the pairs that it does not ignore
+// yet. Everything else stays as data: comments and layout are lost, aliases are written out. What
+// it switches off stays, and so do the spheres of other links; those of a file beside come into
+// this one.
 std::string with_spheres(std::string_view text, const std::filesystem::path& path,
                          const RobotSpheres& spheres, SphereFormat format);
 // A new file.
 std::string sphere_curobo(const RobotSpheres& spheres, const SphereFileContext& context);
 std::string sphere_xrdf(const RobotSpheres& spheres, const SphereFileContext& context);
-// The spheres of all links as a block of YAML, each line indented by `indent` spaces and ended.
-std::string yaml_spheres(const RobotSpheres& spheres, int indent);
-
-// Links that are not tested against a first one, with a reason each.
-struct IgnoredLinks {
-  std::string first;
-  std::vector<std::string> others{};
-  std::vector<std::string> reasons{};
-};
-// The first one of a pair is the one that comes first in `order`: cuRobo searches for it there
-// only.
-std::vector<IgnoredLinks> ignored_links(std::span<const DisabledPair> pairs,
-                                        const std::vector<std::string>& order);
-// "first: [a, b]", and "# REASON: a, b" for the end of the line.
-std::string yaml_ignored(const IgnoredLinks& list);
-std::string yaml_reasons(const IgnoredLinks& list);
-// A comment without control characters, which readers refuse.
-std::string yaml_comment(std::string text);
 
 // JSON: all of the others but Bradshaw's.
 SphereFormatFile read_sphere_json(std::string_view text, const std::filesystem::path& path,
                                   const SphereReadOptions& options);
 std::string sphere_foam(const RobotSpheres& spheres);
 std::string sphere_json(const RobotSpheres& spheres);
-
-// Bradshaw's .sph.
-bool is_bradshaw(std::string_view text);
-RobotSpheres read_bradshaw(std::string_view text, const std::string& file,
-                           const SphereReadOptions& options);
 
 }  // namespace spherule::internal

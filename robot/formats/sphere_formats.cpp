@@ -9,8 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -124,19 +128,60 @@ std::string checked_text(const RobotSpheres& spheres, SphereFormat format,
   return written(spheres, format, context, path);
 }
 
-// An SRDF's pairs and spheres; a radius of zero is its way to say that there is none.
-RobotSpheres read_sphere_srdf(const fs::path& path) {
-  const SemanticDescription semantics = read_srdf(path);
-  internal::SphereGatherer gathered(path.string());
-  gathered.unless(!semantics.sphere_approximations.empty(), {}, "has no link_sphere_approximation");
-  for (const LinkSpheres& link : semantics.sphere_approximations) {
-    gathered.begin_link(link.link, {});
-    for (const Sphere& sphere : link.spheres) {
-      gathered.add(sphere.center, sphere.radius, "link \"" + link.link + "\"");
-    }
+// Sphere trees of Bradshaw's toolkit.
+constexpr std::size_t kMostNodes = 100'000'000;
+
+bool is_count(double value) {
+  return value >= 1.0 && value <= 64.0 && value == static_cast<double>(static_cast<int>(value));
+}
+
+// The numbers of a line; nothing if a part of it is no number.
+std::optional<std::vector<double>> numbers_of(std::string_view line) {
+  std::vector<double> numbers;
+  for (const std::string_view word : internal::words_of(line)) {
+    const std::optional<double> number = internal::finite_number(word);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
   }
-  gathered.spheres.robot = semantics.robot_name;
-  gathered.spheres.self_collision_ignore = semantics.disabled_pairs;
+  return numbers;
+}
+
+// How many levels and children a node, or nothing.
+std::optional<std::pair<std::size_t, std::size_t>> heading(std::string_view line) {
+  const auto numbers = numbers_of(line);
+  if (!numbers || numbers->size() != 2) return std::nullopt;
+  if (!is_count((*numbers)[0]) || !is_count((*numbers)[1])) return std::nullopt;
+  return std::pair(static_cast<std::size_t>((*numbers)[0]),
+                   static_cast<std::size_t>((*numbers)[1]));
+}
+
+bool is_bradshaw(std::string_view text) {
+  return heading(internal::take_line(text)).has_value();
+}
+
+RobotSpheres read_bradshaw(std::string_view text, const std::string& file,
+                           const SphereReadOptions& options) {
+  internal::SphereGatherer gathered(file);
+  const auto [levels, branch] = *heading(internal::take_line(text));
+  const std::size_t level = options.level.value_or(levels - 1);
+  gathered.unless(level < levels, {}, "has only " + std::to_string(levels) + " levels");
+  gathered.begin_link(options.link, {});
+  // Nodes breadth first: those of level l are branch^l after all of the levels above.
+  std::size_t width = 1;
+  std::size_t line = 2;
+  for (std::size_t here = 0; here < levels; ++here) {
+    for (std::size_t node = 0; node < width; ++node, ++line) {
+      const std::string place = "line " + std::to_string(line);
+      gathered.unless(!text.empty(), place, "a node is missing");
+      const auto row = numbers_of(internal::take_line(text));
+      gathered.unless(row && row->size() >= 5, place, "is not \"x y z r occupancy\"");
+      // A node that is not used has a negative radius; it is none that is switched off.
+      if (here != level || (*row)[3] < 0.0) continue;
+      gathered.add({(*row)[0], (*row)[1], (*row)[2]}, (*row)[3], place);
+    }
+    width *= branch;
+    gathered.unless(width <= kMostNodes, {}, "has too many nodes");
+  }
   return std::move(gathered.spheres);
 }
 
@@ -176,7 +221,7 @@ SphereFormatFile read_robot_spheres(const fs::path& path, const SphereReadOption
   const std::string file = path.string();
   switch (text[start]) {
     case '<':
-      if (internal::is_srdf(path)) return {SphereFormat::kSrdf, read_sphere_srdf(path)};
+      if (internal::is_srdf(path)) return {SphereFormat::kSrdf, internal::read_sphere_srdf(path)};
       return {SphereFormat::kUrdf, internal::read_sphere_urdf(path)};
     case '{':
     case '[':
@@ -184,8 +229,8 @@ SphereFormatFile read_robot_spheres(const fs::path& path, const SphereReadOption
     default:
       break;
   }
-  if (internal::is_bradshaw(text)) {
-    return {SphereFormat::kBradshaw, internal::read_bradshaw(text, file, options)};
+  if (is_bradshaw(text)) {
+    return {SphereFormat::kBradshaw, read_bradshaw(text, file, options)};
   }
   return internal::read_sphere_yaml(text, path);
 }

@@ -145,19 +145,17 @@ struct SphereFileContext {
 //   for each sphere, and leaves that stand for one sphere of such a link (above) taken out;
 //   everything else is kept. Relative paths of meshes and textures are made relative to the new
 //   place.
-// - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the spheres is kept, byte by byte
-//   (but YAML in which a changed part stands in a line with others, or in an anchor, is written
-//   anew, without comments). In YAML so are the spheres of links that `spheres` does not name, and
-//   those that are switched off. Pairs of `spheres` that it does not list yet, in either order, are
-//   added: with their reason, in YAML as a comment; to cuRobo's files that have `kinematics`, to
-//   XRDF that has `self_collision`, and to an SRDF that does not enable them. Buffers go into a new
-//   file only.
+// - kSrdf, kCurobo, kXrdf: what `context.original` holds beside the spheres is kept as data, in its
+//   order; layout is not, in YAML comments are lost and aliases are written out. In YAML kept are,
+//   too, the spheres of links that `spheres` does not name, and those that are switched off. Pairs
+//   of `spheres` that it does not list yet, in either order, are added: to cuRobo's files that have
+//   `kinematics`, to XRDF that has `self_collision`, and, with their reason, to an SRDF that does
+//   not enable them. Buffers, and reasons in YAML (as comments), go into a new file only.
 // - A link without spheres: in SRDF, one sphere of radius 0 says so; in a URDF it has no
 //   <collision>.
 // Throws Error for spheres that are not usable or (but for kSpherule) have no extent,
 // names that are empty, twice, not UTF-8 or have control characters, numbers that are not finite,
-// links that the URDF does not have, an SRDF whose text cannot be kept as it is not well-formed
-// XML, and files that cannot be read or written.
+// links that the URDF does not have, and files that cannot be read or written.
 void write_robot_spheres(const RobotSpheres& spheres, SphereFormat format,
                          const SphereFileContext& context, const std::filesystem::path& path);
 

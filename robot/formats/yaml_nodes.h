@@ -17,9 +17,6 @@ namespace spherule::internal {
 // "line 7", or nothing where that is not known.
 std::string place_of(const YAML::Node& node);
 
-// The document of a text that holds exactly one, otherwise nothing. Throws YAML::Exception.
-std::optional<YAML::Node> only_document(const std::string& text);
-
 // The one document of a file.
 YAML::Node yaml_document(std::string_view text, const SphereGatherer& gathered);
 

@@ -164,51 +164,6 @@ TEST_F(SphereFormats, CuroboHasWhatItsUsersNeed) {
   }
 }
 
-TEST_F(SphereFormats, ExistingFilesKeepTheRest) {
-  const RobotSpheres spheres{.robot = "r",
-                             .links = {{"a", {{{1, 2, 3}, 0.5}}}, {"new", {{{1, 0, 0}, 2}}}}};
-  const auto srdf =
-      folder_.write("old.srdf",
-                    "<robot name=\"r\"><!-- kept --><group name=\"g\"><link name=\"a\"/></group>"
-                    "<link_sphere_approximation link=\"a\"><sphere center=\"0 0 0\" radius=\"9\"/>"
-                    "</link_sphere_approximation><disable_collisions link1=\"a\" link2=\"b\" "
-                    "reason=\"Never\"/></robot>");
-  write_robot_spheres(spheres, SphereFormat::kSrdf, {.original = srdf}, file("new.srdf"));
-  const std::string text = read_file(file("new.srdf"));
-  EXPECT_NE(text.find("<!-- kept -->"), std::string::npos);
-  EXPECT_NE(text.find("<group name=\"g\">"), std::string::npos);
-  EXPECT_NE(text.find("reason=\"Never\""), std::string::npos);
-  EXPECT_EQ(text.find("radius=\"9\""), std::string::npos);
-  EXPECT_EQ(difference(read_robot_spheres(file("new.srdf")).spheres.links, spheres.links), "");
-
-  const auto yml = folder_.write(
-      "old.yml",
-      "robot_cfg:\n  kinematics:\n    usd_path: null\n    flag: true\n    \"quoted\": \"1.0\"\n"
-      "    version: 2.0\n    collision_link_names: [a, \"b: c\"]\n    lists: [[1, 2], {x: 3}]\n"
-      "    text: |\n      two\n      lines\n    collision_spheres:\n      a:\n"
-      "      - {center: [0, 0, 0], radius: 9}\n    cspace:\n      joint_names: [j]\n  more: {}\n");
-  write_robot_spheres(spheres, SphereFormat::kCurobo, {.original = yml}, file("new.yml"));
-  const std::string kept = read_file(file("new.yml"));
-  EXPECT_EQ(
-      kept,
-      "robot_cfg:\n  kinematics:\n    usd_path: null\n    flag: true\n    \"quoted\": \"1.0\"\n"
-      "    version: 2.0\n    collision_link_names: [a, \"b: c\", new]\n"
-      "    lists: [[1, 2], {x: 3}]\n    text: |\n      two\n      lines\n    collision_spheres:\n"
-      "      a:\n        - {center: [1.0, 2.0, 3.0], radius: 0.5}\n      new:\n"
-      "        - {center: [1.0, 0.0, 0.0], radius: 2.0}\n    cspace:\n"
-      "      joint_names: [j]\n  more: {}\n");
-  EXPECT_EQ(difference(read_robot_spheres(file("new.yml")).spheres.links, spheres.links), "");
-
-  RobotSpheres first = spheres;
-  first.self_collision_buffer = {{"a", 0.5}};
-  write_robot_spheres(first, SphereFormat::kXrdf, {.joint_names = {"j"}}, file("old.xrdf"));
-  write_robot_spheres(spheres, SphereFormat::kXrdf, {.original = file("old.xrdf")},
-                      file("new.xrdf"));
-  const SphereFormatFile xrdf = read_robot_spheres(file("new.xrdf"));
-  EXPECT_EQ(xrdf.spheres.self_collision_buffer, first.self_collision_buffer);
-  EXPECT_EQ(difference(xrdf.spheres.links, spheres.links), "");
-}
-
 TEST_F(SphereFormats, UrdfKeepsTheRestAndFindsItsMeshes) {
   const RobotSpheres spheres{.robot = "r", .links = {{"a", {{{1, 2, 3}, 0.5}}}}};
   fs::create_directory(file("out"));

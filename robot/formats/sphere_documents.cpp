@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/error.h"
 #include "robot/formats/sphere_documents.h"
+
+#include "base/error.h"
 
 #include <Eigen/Core>
 
