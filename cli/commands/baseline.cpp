@@ -2,7 +2,6 @@
 #include "cli/parts/baseline.h"
 
 #include "cli/commands/command.h"
-#include "cli/help/command_specification.h"
 #include "cli/help/help.h"
 
 #include <CLI/CLI.hpp>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "cli/files/model_unit.h"
+#include "cli/files/model.h"
 #include "cli/help/help.h"
-#include "cli/options/length_options.h"
+#include "cli/options/options.h"
 #include "cli/text/json.h"
 
 #include <string>

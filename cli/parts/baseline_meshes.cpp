@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/files/interruption.h"
+#include "cli/files/files.h"
 #include "cli/files/mesh_output.h"
-#include "cli/files/output.h"
-#include "cli/options/check_number.h"
+#include "cli/options/options.h"
 #include "cli/parts/baseline.h"
-#include "cli/text/exit_code.h"
+#include "cli/text/print.h"
 #include "cli/text/progress.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "cli/help/command_specification.h"
+#include "cli/help/help.h"
 #include "cli/modules/module.h"
-#include "cli/options/check_number.h"
+#include "cli/options/options.h"
 #include "cli/parts/baseline_spheres.h"
 #include "spheretree/build.h"
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/parts/baseline_spheres.h"
 
-#include "cli/files/interruption.h"
-#include "cli/files/output.h"
-#include "cli/options/threads_option.h"
-#include "cli/text/exit_code.h"
-#include "cli/text/message.h"
+#include "cli/files/files.h"
+#include "cli/options/options.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
 #include "io/mesh_io.h"
