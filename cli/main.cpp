@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "cli/commands/command.h"
-#include "cli/files/wrong_file.h"
+#include "cli/files/files.h"
 #include "cli/help/help.h"
-#include "cli/help/usage_error.h"
-#include "cli/memory_reserve.h"
-#include "cli/text/exit_code.h"
-#include "cli/text/message.h"
+#include "cli/text/print.h"
 
 #include <CLI/CLI.hpp>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -80,6 +79,18 @@ int run_guarded(int argc, char** argv) {
   }
 }
 
+// Where memory ends inside a function that must not throw, the exception cannot travel on.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    std::fputs("spherule: out of memory\n", stderr);
+    std::_Exit(kBadInput);
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 }  // namespace spherule
 
@@ -88,6 +99,6 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   // Where the parent ignores it, nobody learns how the readers of STEP files and xacro end.
   std::signal(SIGCHLD, SIG_DFL);
-  spherule::keep_memory_reserve();
+  std::set_terminate(spherule::end_without_memory);
   return spherule::run_guarded(argc, argv);
 }

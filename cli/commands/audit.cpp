@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
+#include "base/rounding.h"
 #include "cli/commands/command.h"
-#include "cli/files/in_file.h"
-#include "cli/files/interruption.h"
-#include "cli/files/model_file.h"
-#include "cli/files/model_unit.h"
-#include "cli/files/output.h"
-#include "cli/files/result_warnings.h"
-#include "cli/files/unit_warnings.h"
-#include "cli/help/command_specification.h"
+#include "cli/files/files.h"
+#include "cli/files/model.h"
+#include "cli/files/warnings.h"
 #include "cli/help/help.h"
-#include "cli/options/threads_option.h"
-#include "cli/parts/audit_bodies.h"
-#include "cli/parts/audit_proof.h"
-#include "cli/text/exit_code.h"
+#include "cli/options/options.h"
 #include "cli/text/json.h"
-#include "cli/text/message.h"
-#include "cli/text/next_step.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
 #include "geometry/mesh_report.h"
 #include "io/sphere_file.h"
 #include "simplifier/leaks.h"
+#include "simplifier/option_record.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
 
@@ -39,6 +31,254 @@
 
 namespace spherule {
 namespace {
+
+// What spheres are proved against as they were fitted: the simplified solid, which is made anew,
+// where D is known, else the mesh and its inside; or one that was made already. Not copied: the
+// options refer to it.
+class SolidProof {
+ public:
+  SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter);
+  SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external);
+  SolidProof(const SolidProof&) = delete;
+  SolidProof& operator=(const SolidProof&) = delete;
+
+  const CertifyOptions& options() const { return options_; }
+  const std::optional<ExternalSpheres>& external() const { return external_; }
+
+ private:
+  std::optional<ExternalSpheres> external_;
+  std::vector<Zone> zones_;
+  CertifyOptions options_;
+};
+
+// What the command line of `audit` says.
+struct AuditArguments {
+  std::vector<std::string> models = {""};
+  std::string spheres;
+  std::vector<std::string> more;  // as written: further models, and then the spheres
+  UnitArguments unit;
+  std::optional<double> min_external;
+  std::optional<double> max_error;
+  LengthOptions lengths;
+  std::string repaired;
+  int threads = 0;
+  bool json = false;
+};
+
+SolidProof::SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter)
+    : SolidProof(options, has_diameter ? std::optional(place_external_spheres(
+                                             mesh, external_options(options)))
+                                       : std::nullopt) {}
+
+SolidProof::SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external)
+    : external_(std::move(external)), zones_(options.zones) {
+  options_.padding = options.padding;
+  options_.threads = options.threads;
+  options_.progress = options.progress;
+  if (!external_) return;
+  options_.external = &*external_;
+  // A file that says how it was fitted was proved at this resolution.
+  options_.resolution =
+      proof_resolution(tightest_error(zones_, options.max_error), external_->box.diagonal().norm());
+  options_.zones = zones_;
+}
+
+// Takes D from the command line, if it is there, in the place of that of the file.
+bool take_min_external(const std::optional<double>& min_external, SimplifyOptions& options) {
+  if (!min_external) return false;
+  options.min_external_diameter = *min_external;
+  if (options.external == ExternalPlacement::kNone) {
+    options.external = ExternalPlacement::kReachable;
+  }
+  return true;
+}
+
+// Fills in the unit and the scale that the file of spheres was made with, as `stored` has them,
+// where the command line has none. Throws Error where it has another unit.
+void take_stored_unit(const std::string& spheres, const SphereFile& file,
+                      const ModelReadOptions& stored, UnitArguments& unit) {
+  if (!stored.units.empty() && !unit.units.empty() && stored.units != unit.units) {
+    throw Error("--units",
+                spheres + " is in " + unit_named(stored.units)->plural + ", as its options say");
+  }
+  if (unit.units.empty()) unit.units = stored.units;
+  if (!unit.scale && file.options.contains("scale")) unit.scale = stored.scale;
+}
+
+bool holds(const Sphere& outer, const Sphere& inner) {
+  if (outer.center == inner.center) return outer.radius >= inner.radius;
+  return add_up(distance_upper(outer.center, inner.center), inner.radius) <= outer.radius;
+}
+
+struct BodyVerdict {
+  std::string name;
+  CertificateRecord certificate;
+  std::string note;  // for a person
+  std::optional<Eigen::Vector3d> deepest_leak = std::nullopt;
+};
+
+bool flag_of(const SphereFile& file, const char* name) {
+  const auto found = file.options.find(name);
+  if (found == file.options.end()) return false;
+  const bool* const truth = std::get_if<bool>(&found->second);
+  if (truth == nullptr) throw Error(name, "must be true or false");
+  return *truth;
+}
+
+ModelBodies read(const AuditArguments& arguments, const SphereFile& file) {
+  ModelReadOptions reading;
+  UnitArguments unit = arguments.unit;
+  bool split = false;
+  blame_file(arguments.spheres, [&] {
+    reading = stored_reading(file);
+    split = flag_of(file, "bodies");
+  });
+  take_stored_unit(arguments.spheres, file, reading, unit);
+  reading.units = unit.units;
+  const std::vector<ModelUnit> units = model_units(arguments.models, unit);
+  arguments.lengths.convert(length_context(arguments.models, units));
+  return read_bodies(arguments.models, units, reading, split);
+}
+
+void check_names(const AuditArguments& arguments, const SphereFile& file,
+                 const ModelBodies& model) {
+  for (std::size_t i = 0; i < std::max(file.bodies.size(), model.bodies.size()); ++i) {
+    const std::string there = i < file.bodies.size() ? file.bodies[i].name : "no more";
+    const std::string here = i < model.bodies.size() ? model.bodies[i].name : "no more";
+    if (there == here) continue;
+    throw Error(arguments.spheres, "is of other bodies: body " + std::to_string(i + 1) + " is " +
+                                       there + ", of the models " + here +
+                                       " (name all that they were fitted to, in that order)");
+  }
+}
+
+class Auditor {
+ public:
+  Auditor(const AuditArguments& arguments, const SphereFile& file, const ModelBodies& model)
+      : arguments_(arguments), file_(file), model_(model) {
+    std::size_t first = 0;
+    for (const BodyRecord& body : file.bodies) {
+      spheres_.push_back(std::span(file.spheres).subspan(first, body.sphere_count));
+      first += body.sphere_count;
+    }
+  }
+
+  std::vector<BodyVerdict> run() {
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+      bar_.callback()(static_cast<double>(i) / static_cast<double>(spheres_.size()),
+                      "auditing bodies");
+      verdicts_.push_back(model_.bodies[i].copy ? copied(i) : proved(i));
+    }
+    bar_.clear();
+    return std::move(verdicts_);
+  }
+
+ private:
+  BodyVerdict proved(std::size_t body) const {
+    const BodyRecord& record = file_.bodies[body];
+    const TriangleMesh& mesh = model_.bodies[body].mesh;
+    const auto of_body = [&](auto action) {
+      return blame_file(arguments_.spheres, [&] { return blame_file(record.name, action); });
+    };
+    SimplifyOptions options = of_body([&] { return options_from_record(record.options); });
+    options.threads = arguments_.threads;
+    const bool has_diameter = take_min_external(arguments_.min_external, options) ||
+                              record.options.contains("min-external");
+    const Certificate certificate = of_body([&] {
+      const SolidProof proof(mesh, options, has_diameter);
+      return certify(mesh, spheres_[body], proof.options());
+    });
+    BodyVerdict verdict{record.name, spherule::record(certificate), ""};
+    if (certificate.uncovered_depth.lower > 0.0) verdict.deepest_leak = certificate.deepest_leak;
+    return verdict;
+  }
+
+  BodyVerdict copied(std::size_t body) const {
+    const BodyCopy& copy = *model_.bodies[body].copy;
+    BodyVerdict verdict{file_.bodies[body].name, verdicts_[copy.of].certificate,
+                        "copy of " + file_.bodies[copy.of].name};
+    verdict.certificate = moved_certificate(verdict.certificate, spheres_[copy.of], copy.pose);
+    const std::vector<Sphere> moved = moved_spheres(spheres_[copy.of], copy.pose);
+    if (!std::ranges::equal(spheres_[body], moved, holds)) {
+      verdict.certificate.covered = false;
+      verdict.note += ", whose spheres these are not, moved";
+    } else if (const std::optional<Eigen::Vector3d>& leak = verdicts_[copy.of].deepest_leak) {
+      verdict.deepest_leak = copy.pose * *leak;
+    }
+    return verdict;
+  }
+
+  const AuditArguments& arguments_;
+  const SphereFile& file_;
+  const ModelBodies& model_;
+  std::vector<std::span<const Sphere>> spheres_;
+  std::vector<BodyVerdict> verdicts_;
+  ProgressBar bar_;
+};
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string text_of(const Eigen::Vector3d& point) {
+  return "(" + text_of(point.x()) + ", " + text_of(point.y()) + ", " + text_of(point.z()) + ")";
+}
+
+void print(std::span<const BodyVerdict> verdicts, bool as_json) {
+  Json list = Json::array();
+  std::vector<std::vector<std::string>> rows = {
+      {"body", "spheres", "covered", "none deeper than", "protrusion", ""}};
+  std::vector<std::vector<std::string>> places;
+  std::size_t covered = 0;
+  for (const BodyVerdict& verdict : verdicts) {
+    const CertificateRecord& record = verdict.certificate;
+    const std::optional<double>& protrusion = record.protrusion_over_simplified_max;
+    covered += record.covered ? 1 : 0;
+    rows.push_back({verdict.name, std::to_string(record.sphere_count),
+                    record.covered ? "yes (proved)" : "no", text_of(record.uncovered_depth_upper),
+                    protrusion ? text_of(*protrusion) : "-", verdict.note});
+    list.push_back(
+        {{"name", verdict.name},
+         {"covered", record.covered},
+         {"uncovered_depth",
+          {to_json(record.uncovered_depth_lower), to_json(record.uncovered_depth_upper)}},
+         {"protrusion_over_simplified_max", protrusion ? to_json(*protrusion) : Json(nullptr)},
+         {"sphere_count", record.sphere_count},
+         {"note", verdict.note}});
+    if (!verdict.deepest_leak) continue;
+    list.back()["deepest_leak"] = to_json(*verdict.deepest_leak);
+    places.push_back({"  " + verdict.name, text_of(*verdict.deepest_leak)});
+  }
+  if (as_json) {
+    std::cout << to_text(Json{{"covered", covered == verdicts.size()}, {"bodies", list}});
+    return;
+  }
+  std::cout << aligned(rows);
+  if (!places.empty())
+    std::cout << "deepest leaks at (x, y, z), in the frame and unit of the file:\n"
+              << aligned(places);
+  std::cout << covered << " of " << verdicts.size() << " bodies are covered (proved)\n";
+}
+
+// `audit` of a file of several bodies, each by itself: of one that is no copy the proof of its
+// spheres, of a copy that its spheres are those of the other, moved. Returns the exit code: kNo if
+// any is not proved. Throws Error, also where the models have other bodies.
+int audit_bodies(const AuditArguments& arguments, const SphereFile& file) {
+  if (!arguments.repaired.empty()) {
+    throw Error("--repair", arguments.spheres + " has several bodies; only one is repaired");
+  }
+  const ModelBodies model = read(arguments, file);
+  check_names(arguments, file, model);
+  const std::vector<BodyVerdict> verdicts = Auditor(arguments, file, model).run();
+  print(verdicts, arguments.json);
+  const bool covered = std::ranges::all_of(
+      verdicts, [](const BodyVerdict& verdict) { return verdict.certificate.covered; });
+  const bool measured = std::ranges::any_of(
+      model.cad, [](const std::optional<CadPart>& part) { return part && !part->proved; });
+  return covered && !measured ? kYes : kNo;
+}
 
 std::string name_of(const std::optional<ExternalSpheres>& external) {
   if (!external) return "the mesh and its inside";

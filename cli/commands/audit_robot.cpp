@@ -3,42 +3,209 @@
 
 #include "base/error.h"
 #include "cli/commands/command.h"
-#include "cli/files/in_file.h"
-#include "cli/files/interruption.h"
-#include "cli/files/output.h"
-#include "cli/help/command_specification.h"
+#include "cli/files/files.h"
 #include "cli/help/help.h"
-#include "cli/options/check_number.h"
-#include "cli/options/length_options.h"
+#include "cli/options/options.h"
 #include "cli/options/robot_options.h"
-#include "cli/options/threads_option.h"
-#include "cli/pages/page_output.h"
+#include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
-#include "cli/robots/audit_robot_report.h"
-#include "cli/robots/link_warnings.h"
-#include "cli/robots/pair_kinds.h"
 #include "cli/robots/pair_report.h"
 #include "cli/robots/sphere_input.h"
-#include "cli/robots/trajectory_input.h"
-#include "cli/text/exit_code.h"
-#include "cli/text/message.h"
-#include "cli/text/next_step.h"
+#include "cli/robots/trajectory.h"
+#include "cli/text/json.h"
+#include "cli/text/print.h"
 #include "cli/text/progress.h"
 #include "robot/formats/sphere_formats.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace spherule {
 namespace {
+
+// What `audit-robot` found, and what it did where it mended. Lengths in metres.
+struct RobotAuditReport {
+  SphereFormatFile file;
+  RobotAudit audit;
+  std::string repaired_file;  // where the mended spheres went; empty if nowhere
+  std::optional<RobotRepair> repair;
+  std::optional<PairKinds> pairs;  // if they were requested
+};
+
+std::string in_mm(double metres) {
+  const double value = metres * kMillimetresPerMetre;
+  return value == 0.0 ? "0" : decimal(value, value < 0.1 ? 4 : 1);
+}
+
+// "12.3 to 12.4", "0" where nothing is uncovered.
+std::string in_mm(const Bounds& depth) {
+  if (depth.upper == 0.0) return "0";
+  return in_mm(depth.lower) + " to " + in_mm(depth.upper);
+}
+
+std::string in_mm(const Eigen::Vector3d& point) {
+  const auto text = [](double metres) {
+    constexpr double kDigit = 10.0;  // adding 0 makes a zero of -0
+    return decimal(std::round(metres * kMillimetresPerMetre * kDigit) / kDigit + 0.0, 1);
+  };
+  return "(" + text(point.x()) + ", " + text(point.y()) + ", " + text(point.z()) + ")";
+}
+
+// What was not certified, a line each.
+void put_notes(std::ostream& out, const RobotAuditReport& report) {
+  const RobotSpheres& spheres = report.file.spheres;
+  if (spheres.switched_off > 0) {
+    out << "left out: " << spheres.switched_off << " spheres that the file switches off\n";
+  }
+  if (spheres.other_shapes > 0) {
+    out << "left out: " << spheres.other_shapes << " collision shapes that are no spheres\n";
+  }
+  for (const std::string& link : report.audit.unknown_links) {
+    out << "left out: the spheres of " << one_line(link) << ", which is no link of the robot\n";
+  }
+}
+
+std::string link_table(const std::vector<LinkAudit>& links) {
+  std::vector<std::vector<std::string>> rows = {
+      {"link", "spheres", "leak surface", "leak inside", "uncovered", "protrusion", "covered"}};
+  std::size_t spheres = 0;
+  Certificate all;
+  all.covered = true;
+  Bounds protrusion;
+  const auto worsen = [](Bounds& worst, const Bounds& other) {
+    worst = {std::max(worst.lower, other.lower), std::max(worst.upper, other.upper)};
+  };
+  const auto add_row = [&](const std::string& name, std::size_t count, const Certificate& of,
+                           const Bounds& protruding, const std::string& share) {
+    rows.push_back({name, std::to_string(count), in_mm(of.surface_depth), in_mm(of.solid_depth),
+                    share, in_mm(protruding), of.covered ? "yes" : "NO"});
+  };
+  for (const LinkAudit& link : links) {
+    if (!link.certificate) {
+      if (link.spheres == 0) continue;
+      rows.push_back({link.link, std::to_string(link.spheres), "no geometry", "", "", "", ""});
+      continue;
+    }
+    const Certificate& certificate = *link.certificate;
+    add_row(link.link, link.spheres, certificate, *certificate.protrusion_over_mesh,
+            percent(link.uncovered_share, 1));
+    spheres += link.spheres;
+    worsen(all.surface_depth, certificate.surface_depth);
+    worsen(all.solid_depth, certificate.solid_depth);
+    worsen(protrusion, *certificate.protrusion_over_mesh);
+    all.covered = all.covered && certificate.covered;
+  }
+  add_row("all", spheres, all, protrusion, "");
+  return aligned(rows);
+}
+
+// Where the links leak; the columns have no room for it.
+void put_places(std::ostream& out, const std::vector<LinkAudit>& links) {
+  std::vector<std::vector<std::string>> rows;
+  for (const LinkAudit& link : links) {
+    if (!link.certificate || !(link.certificate->uncovered_depth.lower > 0.0)) continue;
+    rows.push_back({"  " + link.link, in_mm(link.certificate->deepest_leak)});
+  }
+  if (rows.empty()) return;
+  out << "deepest leaks at (x, y, z), in the frame of the link:\n" << aligned(rows);
+}
+
+void put_repair(std::ostream& out, const RobotAuditReport& report) {
+  if (!report.repair) return;
+  out << "repaired into " << one_line(report.repaired_file) << "\n";
+  for (const LinkRepair& link : report.repair->links) {
+    out << "  " << one_line(link.link) << ": " << link.repair.inflated
+        << " spheres inflated, by at most " << in_mm(link.repair.largest_inflation) << ", and "
+        << link.repair.added << " added; these protrude by at most " << in_mm(link.repair.max_error)
+        << ", all by " << in_mm(link.repair.protrusion_after)
+        << " (before: " << in_mm(link.repair.protrusion_before) << "); "
+        << (link.certificate.covered ? "covered (proved)" : "NOT proved to cover") << "\n";
+  }
+}
+
+Json json_of(const LinkAudit& link) {
+  Json json = Json::object();
+  json["link"] = link.link;
+  json["sphere_count"] = link.spheres;
+  json["uncovered_share"] = link.uncovered_share;
+  json["certificate"] = link.certificate ? to_json(*link.certificate) : Json(nullptr);
+  json["warnings"] = link.warnings;
+  return json;
+}
+
+// A table of the links, the configurations, the repair and the pairs of links, lengths in
+// millimetres.
+std::string audit_table(const RobotAuditReport& report) {
+  std::ostringstream out;
+  out << name_of(report.file.format) << "; lengths in mm\n" << link_table(report.audit.links);
+  put_places(out, report.audit.links);
+  put_notes(out, report);
+  std::size_t number = 0;
+  for (const ConfigurationAudit& configuration : report.audit.configurations) {
+    out << "configuration " << ++number << ": ";
+    if (configuration.uncovered_depth.upper == 0.0) {
+      out << "all links are covered (proved)\n";
+    } else {
+      out << "leak " << in_mm(configuration.uncovered_depth) << ", at "
+          << one_line(configuration.deepest_link);
+      if (configuration.deepest_leak) {
+        out << ", " << in_mm(*configuration.deepest_leak) << " in the frame of the root";
+      }
+      out << "\n";
+    }
+  }
+  put_repair(out, report);
+  if (report.pairs) out << describe(*report.pairs);
+  return out.str();
+}
+
+Json audit_json(const RobotAuditReport& report) {
+  Json json = Json::object();
+  json["format"] = name_of(report.file.format);
+  json["links_covered"] = report.audit.links_covered;
+  json["links"] = Json::array();
+  for (const LinkAudit& link : report.audit.links) json["links"].push_back(json_of(link));
+  json["switched_off"] = report.file.spheres.switched_off;
+  json["other_shapes"] = report.file.spheres.other_shapes;
+  json["unknown_links"] = report.audit.unknown_links;
+  if (!report.audit.configurations.empty()) {
+    json["configurations_covered"] = report.audit.configurations_covered;
+    json["configurations"] = Json::array();
+    for (const ConfigurationAudit& configuration : report.audit.configurations) {
+      json["configurations"].push_back({{"uncovered_depth", to_json(configuration.uncovered_depth)},
+                                        {"deepest_link", configuration.deepest_link}});
+      if (configuration.deepest_leak) {
+        json["configurations"].back()["deepest_leak"] = to_json(*configuration.deepest_leak);
+      }
+    }
+  }
+  if (report.pairs) json.update(to_json(*report.pairs));
+  if (!report.repair) return json;
+  json["repair"] = {{"file", report.repaired_file}, {"links", Json::array()}};
+  for (const LinkRepair& link : report.repair->links) {
+    json["repair"]["links"].push_back(
+        {{"link", link.link},
+         {"max_error", to_json(link.repair.max_error)},
+         {"protrusion_before", to_json(link.repair.protrusion_before)},
+         {"protrusion_after", to_json(link.repair.protrusion_after)},
+         {"grown", link.repair.inflated},
+         {"largest_inflation", to_json(link.repair.largest_inflation)},
+         {"added", link.repair.added},
+         {"certificate", to_json(link.certificate)},
+         {"warnings", link.warnings}});
+  }
+  return json;
+}
 
 struct AuditRobotArguments {
   std::string urdf;

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "cli/commands/command.h"
-#include "cli/files/model_unit.h"
-#include "cli/files/output.h"
-#include "cli/help/command_specification.h"
+#include "cli/files/files.h"
+#include "cli/files/model.h"
 #include "cli/help/help.h"
 #include "cli/options/robot_options.h"
-#include "cli/pages/page_output.h"
 #include "cli/pages/view_files.h"
-#include "cli/pages/view_leaks.h"
 #include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/sphere_input.h"
-#include "cli/text/exit_code.h"
+#include "cli/text/print.h"
 
 #include <CLI/CLI.hpp>
 

@@ -2,9 +2,9 @@
 #include "cli/options/robot_options.h"
 
 #include "base/error.h"
-#include "cli/help/command_specification.h"
-#include "cli/options/length_options.h"
-#include "cli/text/next_step.h"
+#include "cli/help/help.h"
+#include "cli/options/options.h"
+#include "cli/text/print.h"
 #include "simplifier/zone_file.h"
 
 #include <CLI/CLI.hpp>

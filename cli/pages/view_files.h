@@ -35,4 +35,12 @@ internal::JsonDocument<Json> json_in(const std::filesystem::path& file);
 // options say it are shown in it.
 std::vector<ViewItem> view_items(const std::string& file, const std::string& units = "");
 
+// The leaks of every item of spheres, searched for on the surfaces of the meshes among the items,
+// as items of their own, and hides nothing. Parts are compared with parts of the same link.
+std::vector<ViewItem> sampled_leaks(const std::vector<ViewItem>& items);
+
+// Gives the leaks that certificates tell of, in their order, to the sets of spheres among the items
+// where there are as many of both, and adds the surfaces of these leaks, of meshes that are there.
+void place_leaks(std::vector<ViewItem>& items);
+
 }  // namespace spherule

@@ -6,6 +6,7 @@
 #include "simplifier/leaks.h"
 #include "spheretree/sphere_tree.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +15,11 @@
 #include <vector>
 
 namespace spherule {
+
+// Numbers as the page of `view` carries them: the bytes of 32-bit words, the lowest first, in
+// base64.
+std::string encode_words(std::span<const float> words);
+std::string encode_words(std::span<const std::int32_t> words);
 
 // Where a surface is outside of spheres: points of it, the deepest first, and if it is known the
 // part that is.
@@ -54,5 +60,11 @@ struct ViewScene {
 // written as 32-bit floats, without a robot relative to the middle of the scene: the page is for
 // looking only.
 std::string make_view_page(const ViewScene& scene);
+
+// Writes the page of `view` that shows a scene.
+void write_page(const std::string& page, const ViewScene& scene);
+
+// "page: FILE (N KiB); open it in a browser", for a person.
+std::string page_line(const std::string& page);
 
 }  // namespace spherule

@@ -3,13 +3,10 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "cli/files/in_file.h"
-#include "cli/files/recognize.h"
+#include "cli/files/files.h"
 #include "cli/options/robot_options.h"
-#include "cli/pages/view_encoding.h"
 #include "cli/pages/view_files.h"
-#include "cli/pages/view_leaks.h"
-#include "cli/pages/view_pairs.h"
+#include "cli/pages/view_page.h"
 #include "cli/robots/sphere_input.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/link_mesh.h"
@@ -24,6 +21,20 @@
 
 namespace spherule {
 namespace {
+
+Json json_of(const FreeBoxes& boxes) {
+  Json json{{"variables", Json::array()}};
+  for (const FreeBoxes::Variable& variable : boxes.variables()) {
+    json["variables"].push_back({{"index", variable.index},
+                                 {"wraps", variable.wraps},
+                                 {"lower", variable.lower},
+                                 {"upper", variable.upper}});
+  }
+  std::string nodes;
+  for (const char node : boxes.nodes()) nodes += static_cast<char>('A' + node);
+  json["nodes"] = nodes;
+  return json;
+}
 
 namespace fs = std::filesystem;
 
@@ -52,54 +63,6 @@ const char* name_of(JointType type) {
   }
   return "fixed";
 }
-
-}  // namespace
-
-Json view_pose(const Pose& pose) {
-  const Eigen::Quaterniond q = pose.rotation();
-  const Eigen::Vector3d& t = pose.translation();
-  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
-}
-
-Json view_robot(const RobotDescription& robot) {
-  Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
-  for (const Link& link : robot.model.links()) {
-    json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
-  }
-  for (const Joint& joint : robot.model.joints()) {
-    json["joints"].push_back({{"name", joint.name},
-                              {"type", name_of(joint.type)},
-                              {"parent", joint.parent_link},
-                              {"origin", view_pose(joint.parent_from_joint)},
-                              {"axis", to_json(joint.axis)},
-                              {"lower", joint.lower},
-                              {"upper", joint.upper},
-                              {"variable", joint.variable},
-                              {"multiplier", joint.mimics < 0 ? 1.0 : joint.multiplier},
-                              {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
-  }
-  json["variables"] = robot.model.variable_joints();
-  json["rest"] = rest_posture(robot.model).configuration;
-  json["zero"] = zero_posture(robot.model).configuration;
-  return json;
-}
-
-ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry,
-                     const std::string& name) {
-  ViewItem item{.name = name + " geometry", .parts = {}};
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    LinkDescription link = robot.links[i];
-    std::erase_if(link.collision, [](const LinkShape& shape) {
-      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
-      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
-    });
-    auto mesh = link_mesh(link, {.geometry = geometry});
-    if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
-  }
-  return item;
-}
-
-namespace {
 
 // What a file says of links that the robot has not cannot be shown, but is not passed over in
 // silence.
@@ -177,6 +140,70 @@ bool has_spheres(const RobotDescription& robot) {
 }
 
 }  // namespace
+
+bool is_of_pairs_alone(const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".pairs") return true;
+  const std::string text = read_file(file);
+  const auto has = [&](const char* mark) { return text.find(mark) != std::string::npos; };
+  return has("<robot") && has("<disable_collisions") && !has("<link_sphere_approximation");
+}
+
+Json view_pairs(const PairKinds& kinds) {
+  Json json = Json::array();
+  for (const PairStatus& pair : kinds.pairs) {
+    Json& written =
+        json.emplace_back(Json{{"links", {pair.first, pair.second}}, {"kind", kind_of(pair)}});
+    if (pair.verdict) written["verdict"] = name_of(*pair.verdict);
+    if (pair.reason == AllowedReason::kFreeInBoxes) {
+      written["boxes"] = json_of(kinds.proofs->find(pair.first, pair.second)->boxes);
+    }
+  }
+  return json;
+}
+
+Json view_pose(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.rotation();
+  const Eigen::Vector3d& t = pose.translation();
+  return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+Json view_robot(const RobotDescription& robot) {
+  Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
+  for (const Link& link : robot.model.links()) {
+    json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
+  }
+  for (const Joint& joint : robot.model.joints()) {
+    json["joints"].push_back({{"name", joint.name},
+                              {"type", name_of(joint.type)},
+                              {"parent", joint.parent_link},
+                              {"origin", view_pose(joint.parent_from_joint)},
+                              {"axis", to_json(joint.axis)},
+                              {"lower", joint.lower},
+                              {"upper", joint.upper},
+                              {"variable", joint.variable},
+                              {"multiplier", joint.mimics < 0 ? 1.0 : joint.multiplier},
+                              {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
+  }
+  json["variables"] = robot.model.variable_joints();
+  json["rest"] = rest_posture(robot.model).configuration;
+  json["zero"] = zero_posture(robot.model).configuration;
+  return json;
+}
+
+ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry,
+                     const std::string& name) {
+  ViewItem item{.name = name + " geometry", .parts = {}};
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    LinkDescription link = robot.links[i];
+    std::erase_if(link.collision, [](const LinkShape& shape) {
+      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
+    });
+    auto mesh = link_mesh(link, {.geometry = geometry});
+    if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
+  }
+  return item;
+}
 
 ViewScene covered_robot_scene(const RobotDescription& robot, const std::string& geometry,
                               const RobotSpheres& spheres, const std::string& name,

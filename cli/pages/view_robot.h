@@ -2,7 +2,9 @@
 #pragma once
 
 #include "cli/pages/view_page.h"
-#include "cli/robots/trajectory_input.h"
+#include "cli/robots/pair_report.h"
+#include "cli/robots/trajectory.h"
+#include "cli/text/json.h"
 #include "geometry/pose.h"
 #include "robot/cover/link_mesh.h"
 #include "robot/formats/sphere_formats.h"
@@ -12,6 +14,15 @@
 #include <vector>
 
 namespace spherule {
+
+// Whether a file tells of pairs of a robot's links and has no spheres: NAME.pairs, or an SRDF
+// without approximations.
+bool is_of_pairs_alone(const std::string& file);
+
+// The pairs of links as the page takes them: indices of links, kind, verdict and, where they are
+// proved free somewhere and not ignored, the boxes, a letter for each node ('A' a box that is not
+// proved, 'B' a free one, from 'C' on one that is halved: its variable).
+Json view_pairs(const PairKinds& kinds);
 
 struct RobotViewOptions {
   std::vector<std::string> packages;  // NAME=DIR

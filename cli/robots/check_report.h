@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "cli/options/shard.h"
-#include "cli/robots/turn_review.h"
+#include "base/progress.h"
+#include "cli/options/options.h"
+#include "cli/robots/trajectory.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_collision.h"
 #include "robot/files/trajectory_file.h"
@@ -116,5 +117,26 @@ std::vector<TouchingPair> always_touching(const CheckReport& report);
 // For a person, a few lines and a table, and as JSON.
 std::string check_table(const CheckReport& report);
 std::string check_json(const CheckReport& report);
+
+struct TrajectoryCheckOptions {
+  // In so many of the first configurations pairs that only proofs keep apart are counted, too.
+  std::size_t explained = 0;
+  int threads = 0;
+  Progress progress{};
+  EdgeRequest edge{};  // of motions
+  // Of all parts of a trajectory together; 0: of what is given. How many places of a motion are
+  // searched for contacts deeper than its first depends on it alone, so that each part finds what
+  // the whole does.
+  std::size_t configurations_in_all = 0;
+};
+
+// One for each thread: `threads` of them, or for 0 as many as the machine runs at once.
+std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads);
+
+// Every configuration, or every motion from one to the next.
+TrajectoryFindings check_configurations(const RobotChecker& checker, const Trajectory& trajectory,
+                                        const TrajectoryCheckOptions& options);
+TrajectoryFindings check_motions(const RobotChecker& checker, const Trajectory& trajectory,
+                                 const TrajectoryCheckOptions& options);
 
 }  // namespace spherule

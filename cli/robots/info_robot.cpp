@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/info_robot.h"
 
-#include "cli/files/result_warnings.h"
-#include "cli/text/message.h"
+#include "cli/files/warnings.h"
+#include "cli/text/print.h"
 #include "robot/files/srdf.h"
 #include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"

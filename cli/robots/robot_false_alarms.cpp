@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "cli/help/command_specification.h"
+#include "cli/help/help.h"
 #include "robot/model/link_spheres.h"
 
 #include <CLI/CLI.hpp>

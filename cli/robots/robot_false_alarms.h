@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "cli/robots/trajectory_input.h"
+#include "cli/robots/trajectory.h"
 #include "robot/cover/goal_cover.h"
 
 #include <cstddef>

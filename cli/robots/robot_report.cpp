@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/robot_report.h"
 
-#include "cli/files/result_warnings.h"
+#include "cli/files/warnings.h"
 #include "cli/options/robot_options.h"
-#include "cli/text/message.h"
-#include "cli/text/units.h"
+#include "cli/robots/pair_report.h"
+#include "cli/text/print.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iomanip>
 #include <limits>
 #include <optional>
 #include <span>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -66,21 +71,10 @@ Json summary_of(const LinkCover& link) {
   return json;
 }
 
-// A number of the table, blanks before it.
-class Cell {
- public:
-  Cell(double value, int width, int digits) : value_(value), width_(width), digits_(digits) {}
-
-  friend std::ostream& operator<<(std::ostream& out, const Cell& cell) {
-    return out << std::fixed << std::setprecision(cell.digits_) << std::setw(cell.width_)
-               << cell.value_;
-  }
-
- private:
-  double value_;
-  int width_;
-  int digits_;
-};
+// In millimetres.
+std::string mm(double metres, int digits) {
+  return decimal(metres * kMillimetresPerMetre, digits);
+}
 
 // A depth that is proved to be none is shown as a bare 0; no other is.
 std::string depth_text(bool covered, double depth) {
@@ -90,11 +84,14 @@ std::string depth_text(bool covered, double depth) {
   return out.str();
 }
 
-void write_row(std::ostream& out, const std::string& name, double max_error, const Totals& sums) {
-  out << name << Cell(max_error * kMillimetresPerMetre, 8, 1) << std::setw(11) << sums.triangles
-      << std::setw(9) << sums.spheres << std::setw(11) << depth_text(sums.covered, sums.depth)
-      << Cell(sums.protrusion * kMillimetresPerMetre, 12, 2)
-      << Cell(sums.over_mesh * kMillimetresPerMetre, 11, 2);
+std::vector<std::string> row_of(const std::string& name, double max_error, const Totals& sums) {
+  return {name,
+          mm(max_error, 1),
+          std::to_string(sums.triangles),
+          std::to_string(sums.spheres),
+          depth_text(sums.covered, sums.depth),
+          mm(sums.protrusion, 2),
+          mm(sums.over_mesh, 2)};
 }
 
 constexpr double kLitresPerCubicMetre = 1e3;
@@ -114,12 +111,99 @@ std::string describe_filling(const RobotCover& cover) {
     slack = std::max(slack, external.closing_slack / external.min_external_diameter);
   }
   if (least == kNone) return {};
-  std::ostringstream out;
-  out << "filled: what is narrower than D = " << Cell(least * kMillimetresPerMetre, 0, 1);
-  if (most > least) out << " to " << Cell(most * kMillimetresPerMetre, 0, 1);
-  out << " mm (a smaller --min-external fills less); ways that are wider by "
-      << Cell(100.0 * slack, 0, 1) << " % stay open (proved)\n";
-  return out.str();
+  return "filled: what is narrower than D = " + mm(least, 1) +
+         (most > least ? " to " + mm(most, 1) : "") +
+         " mm (a smaller --min-external fills less); ways that are wider by " +
+         decimal(100.0 * slack, 1) + " % stay open (proved)\n";
+}
+
+constexpr std::size_t kShownPairs = 5;
+// Meshes nearer to each other than this part of the E of their links together touch, for spheres.
+constexpr double kReallyClose = 1.0 / 16.0;
+
+std::string millimetres(double length) {
+  const double value = length * kMillimetresPerMetre;
+  return decimal(value, value < 10.0 ? 1 : 0) + " mm";
+}
+
+Json counts_of(const FalseAlarms& alarms, const RobotModel& robot) {
+  Json json = Json::object();
+  json["postures"] = alarms.postures;
+  json["free"] = alarms.free;
+  json["proofs"] = name_of(alarms.proofs);
+  json["refused"] = alarms.refused_share().refused;
+  json["share"] = alarms.refused_share().share();
+  for (const PairProofs proofs : {PairProofs::kNone, PairProofs::kNever, PairProofs::kBoxes}) {
+    json["share_with_proofs"][std::string(name_of(proofs))] = alarms.refused_share(proofs).share();
+  }
+  json["always_touching"] = Json::array();
+  for (const auto& [first, second] : alarms.always_touching) {
+    json["always_touching"].push_back({link_name(robot, first), link_name(robot, second)});
+  }
+  json["pairs"] = Json::array();
+  for (const PairAlarms& pair : alarms.pairs) {
+    json["pairs"].push_back(
+        {{"links", {link_name(robot, pair.first), link_name(robot, pair.second)}},
+         {"refused", pair.refused},
+         {"refused_alone", pair.refused_alone},
+         {"median_gap", spherule::to_json(pair.median_gap)}});
+  }
+  return json;
+}
+
+double max_error_of(const RobotCover& cover, int link) {
+  const auto& fit = cover.links[static_cast<std::size_t>(link)].fit;
+  return fit ? fit->options.max_error : 0.0;
+}
+
+std::string remedy(const PairAlarms& pair, const RobotCover& cover) {
+  const double errors = max_error_of(cover, pair.first) + max_error_of(cover, pair.second);
+  if (pair.median_gap <= kReallyClose * errors) {
+    return "really close: confirm contacts on meshes";
+  }
+  if (pair.median_gap >= errors) return "gaps are filled: a smaller D would spare half";
+  return "E of " + millimetres(0.5 * pair.median_gap) + " on both would spare half";
+}
+
+void describe_pairs(const FalseAlarms& alarms, const RobotModel& robot, const RobotCover& cover,
+                    std::ostream& out) {
+  const auto of_free = [&](std::size_t count) {
+    return percent(RefusedShare{alarms.free, count}.share());
+  };
+  for (std::size_t i = 0; i < std::min(kShownPairs, alarms.pairs.size()); ++i) {
+    const PairAlarms& pair = alarms.pairs[i];
+    out << "  " << one_line(link_name(robot, pair.first)) << " and "
+        << one_line(link_name(robot, pair.second)) << ": " << of_free(pair.refused) << ", "
+        << of_free(pair.refused_alone) << " alone, meshes " << millimetres(pair.median_gap)
+        << " apart; " << remedy(pair, cover) << "\n";
+  }
+  if (alarms.pairs.size() > kShownPairs) {
+    out << "  and " << alarms.pairs.size() - kShownPairs << " more pairs\n";
+  }
+}
+
+std::string_view words_for(PairProofs proofs) {
+  switch (proofs) {
+    case PairProofs::kNever:
+      return "where pairs that never touch are tested";
+    case PairProofs::kBoxes:
+      return "where only pairs that never touch are ignored, as cuRobo and MoveIt do";
+    case PairProofs::kNone:
+      break;
+  }
+  return "where no pair is ignored";
+}
+
+void describe_choice(const MeasuredCover& measured, std::ostream& out) {
+  const LinkErrorChoice& choice = *measured.choice;
+  out << "  goal " << percent(*measured.goal) << ": "
+      << (choice.is_reached ? "reached" : "not reached") << " with " << choice.spheres
+      << " spheres; E of " << millimetres(measured.cover.options.max_error)
+      << " everywhere would take " << choice.coarsest_spheres << " and refuse "
+      << percent(choice.coarsest.refused_share().share()) << "\n";
+  if (!choice.is_reached && measured.random.refused_share().share() <= *measured.goal) {
+    out << "  so few postures do not show it: try more (--postures)\n";
+  }
 }
 
 }  // namespace
@@ -156,45 +240,89 @@ Json robot_report(const Json& summary, const RobotCover& cover, ReportContent co
 }
 
 std::string robot_table(const RobotCover& cover, double seconds) {
-  std::size_t width = 5;  // of "total"
-  for (const LinkCover& link : cover.links) width = std::max(width, one_line(link.link).size());
-  const auto padded = [&](std::string name) {
-    name.resize(width, ' ');
-    return name;
-  };
-  std::ostringstream out;
-  out << padded("link")
-      << "       E  triangles  spheres  uncovered  protrusion  over mesh  volume   filled  "
-         "seconds\n"
-      << padded("")
-      << "    [mm]                           [mm]        [mm]       [mm]            [l]\n";
+  std::vector<std::vector<std::string>> rows = {{"link", "E/mm", "triangles", "spheres",
+                                                 "uncovered/mm", "protrusion/mm", "over mesh/mm",
+                                                 "volume", "filled/l", "seconds", ""}};
   for (const LinkCover& link : cover.links) {
     if (!link.fit) {
-      out << padded(one_line(link.link)) << "  no " << name_of(cover.options.geometry)
-          << " geometry\n";
+      rows.push_back({link.link, "no " + name_of(cover.options.geometry) + " geometry"});
+      rows.back().resize(rows.front().size());
       continue;
     }
-    write_row(out, padded(one_line(link.link)), link.fit->options.max_error, Totals({&link, 1}));
     const std::optional<double>& volume = link.fit->certificate.volume_ratio;
-    if (volume && *volume > kLargestRatio) {  // next to none in the mesh
-      out << std::setw(8) << "> 1e4";
-    } else if (volume) {
-      out << Cell(*volume, 8, 2);
-    } else {  // an open mesh has none
-      out << std::setw(8) << "-";
-    }
     const std::optional<double>& filled = link.fit->certificate.filled_volume;
-    if (filled) {
-      out << Cell(*filled * kLitresPerCubicMetre, 9, 3);
-    } else {
-      out << std::setw(9) << "-";
-    }
-    out << Cell(link.seconds, 9, 1) << (link.fit->interrupted ? " *" : "") << "\n";
+    std::vector<std::string> row =
+        row_of(link.link, link.fit->options.max_error, Totals({&link, 1}));
+    row.push_back(!volume                   ? "-"      // an open mesh has none
+                  : *volume > kLargestRatio ? "> 1e4"  // next to none in the mesh
+                                            : decimal(*volume, 2));
+    row.push_back(filled ? decimal(*filled * kLitresPerCubicMetre, 3) : "-");
+    row.push_back(decimal(link.seconds, 1));
+    row.emplace_back(link.fit->interrupted ? "*" : "");
+    rows.push_back(std::move(row));
   }
-  write_row(out, padded("total"), cover.options.max_error, Totals(cover.links));
-  out << std::setw(17) << "" << Cell(seconds, 9, 1) << "\n";
-  if (!links_interrupted(cover).empty()) out << "* " << kInterruptedSearch << "\n";
-  out << describe_filling(cover);
+  std::vector<std::string> total = row_of("total", cover.options.max_error, Totals(cover.links));
+  total.insert(total.end(), {"", "", decimal(seconds, 1), ""});
+  rows.push_back(std::move(total));
+  return aligned(rows) +
+         (links_interrupted(cover).empty() ? "" : "* " + std::string(kInterruptedSearch) + "\n") +
+         describe_filling(cover);
+}
+
+Json false_alarm_summary(const MeasuredCover& measured, const RobotModel& robot) {
+  if (measured.random.postures == 0) return nullptr;
+  Json json = counts_of(measured.random, robot);
+  json["share_upper_bound"] = measured.upper_bound;
+  json["confidence"] = LinkErrorChoice::kConfidence;
+  if (measured.given.postures > 0) json["given"] = counts_of(measured.given, robot);
+  if (!measured.choice) return json;
+  const LinkErrorChoice& choice = *measured.choice;
+  json["goal"] = {{"share", *measured.goal},
+                  {"reached", choice.is_reached},
+                  {"sphere_count", choice.spheres},
+                  {"coarsest",
+                   {{"max_error", measured.cover.options.max_error},
+                    {"sphere_count", choice.coarsest_spheres},
+                    {"share", choice.coarsest.refused_share().share()}}}};
+  json["goal"]["links"] = Json::array();
+  for (const ChosenError& link : choice.links) {
+    json["goal"]["links"].push_back({{"link", link_name(robot, link.link)},
+                                     {"max_error", link.max_error},
+                                     {"sphere_count", link.spheres}});
+  }
+  return json;
+}
+
+std::string describe_false_alarms(const MeasuredCover& measured, const RobotModel& robot) {
+  if (measured.random.postures == 0) return {};
+  const FalseAlarms& alarms = measured.random;
+  std::ostringstream out;
+  out << "false alarms: " << percent(alarms.refused_share().share()) << " of " << alarms.free
+      << " free postures (of " << alarms.postures
+      << " random ones) are refused because of spheres, "
+      << "at most " << percent(measured.upper_bound) << " of all with "
+      << std::lround(100.0 * LinkErrorChoice::kConfidence) << " % confidence";
+  if (alarms.proofs != PairProofs::kNone) {
+    out << "; " << percent(alarms.refused_share(PairProofs::kNone).share()) << " "
+        << words_for(PairProofs::kNone);
+  }
+  if (alarms.proofs == PairProofs::kBoxes) {
+    out << ", " << percent(alarms.refused_share(PairProofs::kNever).share()) << " "
+        << words_for(PairProofs::kBoxes);
+  }
+  out << "\n";
+  for (const auto& [first, second] : alarms.always_touching) {
+    out << "  not counted: the meshes of " << one_line(link_name(robot, first)) << " and "
+        << one_line(link_name(robot, second))
+        << " touch in all postures; disable the pair (--srdf)\n";
+  }
+  if (measured.choice) describe_choice(measured, out);
+  describe_pairs(alarms, robot, measured.cover, out);
+  if (measured.given.postures > 0) {
+    out << "  given postures: " << percent(measured.given.refused_share().share()) << " of "
+        << measured.given.free << " free ones (of " << measured.given.postures << ")\n";
+    describe_pairs(measured.given, robot, measured.cover, out);
+  }
   return out.str();
 }
 

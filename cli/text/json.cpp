@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/text/json.h"
 
-#include "cli/text/control_character.h"
+#include "cli/text/print.h"
 
 #include <cmath>
 #include <cstddef>

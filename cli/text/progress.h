@@ -4,8 +4,11 @@
 #include "base/progress.h"
 
 #include <chrono>
+#include <functional>
 #include <mutex>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 namespace spherule {
 
@@ -39,6 +42,34 @@ class ProgressBar {
   std::string last_what_;
   // Of the last line, or of the start.
   std::chrono::steady_clock::time_point last_time_;
+};
+
+// Runs `write`, which writes files beside their place and renames them, to its end even if the user
+// interrupts, and obeys the interruption afterwards: Ctrl-C leaves no half-written file.
+void write_uninterrupted(const std::function<void()>& write);
+
+// Turns an interruption (SIGINT, SIGTERM, SIGHUP) of a long search into a request to stop, so that
+// what is proved so far can be written. While it lives, and once have_answer() was called, the
+// first interruption requests the stop and says so on standard error; a second one, or any before
+// have_answer(), ends the process as usual. One at a time in a process.
+class StopOnInterruption {
+ public:
+  StopOnInterruption();
+  // Obeys an interruption that came: ends the process by its signal, so that a script stops, unless
+  // an exception is on its way.
+  ~StopOnInterruption();
+  StopOnInterruption(const StopOnInterruption&) = delete;
+  StopOnInterruption& operator=(const StopOnInterruption&) = delete;
+
+  // For the `stop` field of options.
+  std::stop_token token() const { return source_.get_token(); }
+
+  // From now on there is something to write. From any thread.
+  void have_answer();
+
+ private:
+  std::stop_source source_;
+  std::jthread watcher_;
 };
 
 }  // namespace spherule

@@ -35,14 +35,13 @@ function free_area() {
   return {x: left, y: 0, width: Math.max(innerWidth - left, 1), height: Math.max(innerHeight - bottom, 1)};
 }
 
-// What is looked at stands in the middle of an area of a picture of that size.
-function aim_at(area, width, height) {
-  camera.aspect = width / height;
-  camera.setViewOffset(width, height, width / 2 - area.x - area.width / 2,
-                       height / 2 - area.y - area.height / 2, width, height);
+// What is looked at stands in the middle of what the panel leaves free, or of a pane of that.
+function fit_view(pane = 0) {
+  const area = pane_areas()[Math.max(pane, 0)];
+  camera.aspect = innerWidth / innerHeight;
+  camera.setViewOffset(innerWidth, innerHeight, innerWidth / 2 - area.x - area.width / 2,
+                       innerHeight / 2 - area.y - area.height / 2, innerWidth, innerHeight);
 }
-// In the middle of what the panel leaves free, or of a pane of that.
-const fit_view = (pane = 0) => aim_at(pane_areas()[Math.max(pane, 0)], innerWidth, innerHeight);
 
 // Looks at a box from a direction, from as near as all of it is seen.
 function look_from(name) {
@@ -111,11 +110,12 @@ function pan(x, y) {
   look_at(controls.target.clone().add(shift), camera.position.clone().sub(controls.target));
 }
 
-// The pixel of a picture, the window's by default, that shows a point of the world, and whether it
-// can be seen: it stands before the eye and not too far.
-function pixel_of(place, width = innerWidth, height = innerHeight) {
+// The pixel that shows a point of the world, and whether it can be seen: it stands before the eye
+// and not too far.
+function pixel_of(place) {
   const p = place.clone().project(camera);
-  return {x: (0.5 + 0.5 * p.x) * width, y: (0.5 - 0.5 * p.y) * height, seen: Math.abs(p.z) < 1};
+  return {x: (0.5 + 0.5 * p.x) * innerWidth, y: (0.5 - 0.5 * p.y) * innerHeight,
+          seen: Math.abs(p.z) < 1};
 }
 
 // How much of the world a pixel shows at the point looked at.

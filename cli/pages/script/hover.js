@@ -56,9 +56,7 @@ function show_alone(link) {
 
 function click_at(x, y) {
   const found = pick(x, y);
-  if (measure.on) {
-    if (found) add_measured_point(found);
-  } else if (found && found.part.link >= 0) {
+  if (found && found.part.link >= 0) {
     show_alone(found.part.link);
   } else if (!found && link_alone >= 0) {
     show_alone(link_alone);

@@ -29,8 +29,7 @@ function draw() {
   place_clipping_planes();
   camera.updateMatrixWorld(true);
   place_cut(camera);
-  place_measure();
-  draw_panes(pane_areas(), innerWidth, innerHeight, fit_view);
+  draw_panes();
   place_pane_titles();
   place_axes();
   place_scale();
@@ -45,7 +44,7 @@ const kKeys = {
   "+": () => zoom(0.9), "=": () => zoom(0.9), "-": () => zoom(1.1),
   0: () => look_from("home"), 1: () => look_from("front"), 2: () => look_from("right"),
   3: () => look_from("top"), p: fold, d: switch_theme,
-  " ": toggle_playing, m: switch_measure, s: switch_panes, n: () => jump(1), b: () => jump(-1),
+  " ": toggle_playing, s: switch_panes, n: () => jump(1), b: () => jump(-1),
 };
 const kShiftKeys = {ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0),
                     ArrowUp: () => pan(0, 1), ArrowDown: () => pan(0, -1)};
@@ -81,7 +80,6 @@ function start() {
   items.forEach(add_item);
   add_leaks();
   add_cut();
-  add_tools();
   add_panes();
   add_robot();
   add_player();

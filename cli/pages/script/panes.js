@@ -16,32 +16,30 @@ function start_side_by_side() {
 const can_stand_side_by_side = pane_sets.length >= 2 && pane_sets.length <= kMostPanes;
 panes.on = can_stand_side_by_side && start_side_by_side();
 
-const pane_count = () => panes.on ? pane_sets.length : 1;
-
 // In which pane an item is; -1 for all of them.
 function pane_of(item) {
   if (!panes.on) return -1;
   return pane_sets.findIndex((set) => set === item || (item.of && set.full_name === item.of));
 }
 
-// An area in equal parts, one beside the other, or one below the other where it is narrow.
-function split_area({x, y, width, height}) {
-  const count = pane_count();
+// The free area in equal parts, one beside the other, or one below the other where it is narrow.
+function pane_areas() {
+  const {x, y, width, height} = free_area();
+  const count = panes.on ? pane_sets.length : 1;
   const stacked = width < 0.8 * height;
   return Array.from({length: count}, (_, k) => stacked
       ? {x, y: y + height * k / count, width, height: height / count}
       : {x: x + width * k / count, y, width: width / count, height});
 }
-const pane_areas = () => split_area(free_area());
 
 const pane_at = (x, y) => pane_areas().findIndex(
     (area) => x < area.x + area.width && y < area.y + area.height);
 
-// Draws all panes of a picture of that size; `aim` points the camera at one of them.
-function draw_panes(areas, width, height, aim) {
+function draw_panes() {
+  const areas = pane_areas();
   const is_split = areas.length > 1;
   areas.forEach((area, k) => {
-    aim(k);
+    fit_view(k);
     for (const item of items) {
       const own = pane_of(item);
       for (const part of item.parts) part.group.visible = part.visible && (own < 0 || own === k);
@@ -49,7 +47,7 @@ function draw_panes(areas, width, height, aim) {
     renderer.setScissorTest(is_split);
     // The first one goes on below the panel.
     const left = k === 0 ? 0 : area.x;
-    renderer.setScissor(left, height - area.y - area.height, area.x + area.width - left, area.height);
+    renderer.setScissor(left, innerHeight - area.y - area.height, area.x + area.width - left, area.height);
     renderer.render(world, camera);
   });
   renderer.setScissorTest(false);
