@@ -5,9 +5,7 @@
 #include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
 #include "tests/cli/command_test_support.h"
-#include "tests/simplifier/cad/cad_assembly.h"
 #include "tests/simplifier/cad/cad_parts.h"
-#include "tests/simplifier/cad/cad_shapes.h"
 #include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 

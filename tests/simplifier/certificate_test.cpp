@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What certify() says of sets whose leaks and protrusion are known, and what it refuses.
 #include "simplifier/simplify.h"
 
+#include "simplifier/cover_breakdown.h"
+#include "simplifier/proof/protrusion.h"
+#include "simplifier/repair.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
@@ -11,38 +15,36 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
+using Spheres = std::vector<Sphere>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const double kRoot3 = std::numbers::sqrt3;
 const Vector3d kMiddle = Vector3d::Constant(0.5);
 
-// A solid without external spheres: its box.
-ExternalSpheres box_of(const TriangleMesh& mesh) {
-  return place_external_spheres(mesh, {.placement = ExternalPlacement::kNone});
+// That the exact value is between the bounds, and each of them within `slack` of it.
+void expect_bounds(const Bounds& bounds, double exact, double slack) {
+  EXPECT_LE(bounds.lower, exact);
+  EXPECT_GE(bounds.upper, exact);
+  EXPECT_GE(bounds.lower, exact - slack);
+  EXPECT_LE(bounds.upper, exact + slack);
 }
 
-// Without external spheres, what is inside is found by a flood, whose fine cells are many.
-CertifyOptions flooded() {
-  CertifyOptions options;
-  if (kSanitized) options.resolution = 1.0 / 512.0;
-  return options;
-}
-
-// One sphere a cell of an n x n x n grid over the unit cube, around the cell and a little more: a
-// piece of surface that crosses from cell to cell has to fit into one of them.
-std::vector<Sphere> grid_of_spheres(int n) {
-  std::vector<Sphere> spheres;
+// One sphere a cell of an n x n x n grid over the unit cube, of that share of the radius about the
+// cell: a piece of surface that crosses from cell to cell has to fit into one of them.
+Spheres grid_of_spheres(int n, double share = 1.01) {
+  Spheres spheres;
   for (int i = 0; i < n * n * n; ++i) {
     const Vector3d cell(i % n, i / n % n, i / n / n);
-    spheres.push_back({(cell + kMiddle) / n, kRoot3 / (2 * n) * 1.01});
+    spheres.push_back({(cell + kMiddle) / n, kRoot3 / (2 * n) * share});
   }
   return spheres;
 }
@@ -55,22 +57,19 @@ TEST(Certificate, SurfaceThatCrossesWhereSpheresHardlyOverlapIsCoveredAsPartOfTh
   const Vector3d a(0.1, 0.2, 0.3), b(0.9, 0.35, 0.6);
   mesh.vertices.insert(mesh.vertices.end(), {a, b, (kMiddle - 0.3 * a - 0.37 * b) / 0.33});
   mesh.triangles.push_back({first, first + 1, first + 2});
-  std::vector<Sphere> spheres = grid_of_spheres(4);
-  for (Sphere& sphere : spheres) sphere.radius = kRoot3 / 8 * (1 + 1e-9);
+  const Spheres spheres = grid_of_spheres(4, 1 + 1e-9);
   ExternalSpheres external = box_of(mesh);
-  CertifyOptions options;
-  options.external = &external;
-  EXPECT_TRUE(certify(mesh, spheres, options).covered);
+  EXPECT_TRUE(certify(mesh, spheres, {.external = &external}).covered);
 
   // Not if S does not hold the mesh: then nothing is proved of the rest of it.
   external.spheres.push_back({{0.5, 0.5, 0.5}, 0.3});
-  const Certificate pierced = certify(mesh, spheres, options);
+  const Certificate pierced = certify(mesh, spheres, {.external = &external});
   EXPECT_FALSE(pierced.covered);
   EXPECT_EQ(pierced.solid_depth.upper, 0.0);
   EXPECT_EQ(pierced.surface_depth.lower, 0.0);
   external.spheres.clear();
   external.box.max().x() = 0.75;
-  EXPECT_FALSE(certify(mesh, spheres, options).covered);
+  EXPECT_FALSE(certify(mesh, spheres, {.external = &external}).covered);
 }
 
 TEST(Certificate, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
@@ -78,17 +77,13 @@ TEST(Certificate, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
   // The flood without external spheres is fine, and slow under sanitizers.
   for (const ExternalSpheres* external :
        effort(std::vector<const ExternalSpheres*>{&box, nullptr}, 1)) {
-    CertifyOptions options;
-    options.external = external;
     const auto certificate = [&](double radius) {
-      return certify(cube_mesh(), std::vector<Sphere>{{kMiddle, radius}}, options);
+      return certify(cube_mesh(), Spheres{{kMiddle, radius}}, {.external = external});
     };
     EXPECT_TRUE(certificate(kRoot3 / 2 + 1e-9).covered);
     const Certificate leak = certificate(0.8);
     EXPECT_FALSE(leak.covered);
-    EXPECT_LE(leak.surface_depth.lower, kRoot3 / 2 - 0.8);
-    EXPECT_GE(leak.surface_depth.upper, kRoot3 / 2 - 0.8);
-    EXPECT_LE(leak.surface_depth.upper - leak.surface_depth.lower, 1e-9);
+    expect_bounds(leak.surface_depth, kRoot3 / 2 - 0.8, 1e-9);
     EXPECT_EQ(leak.sphere_count, 1U);
     EXPECT_GT(leak.pieces, 0U);
     EXPECT_GT(leak.cells, 0U);
@@ -100,54 +95,42 @@ TEST(Certificate, ACubeIsCoveredByItsCircumscribedSphereAndByNoSmallerOne) {
 TEST(Certificate, AMissingSphereIsALeakOfTheExactDepth) {
   const int n = 3;
   const ExternalSpheres box = box_of(cube_mesh());
-  CertifyOptions options;
-  options.external = &box;
-  const std::vector<Sphere> all = grid_of_spheres(n);
-  EXPECT_TRUE(certify(cube_mesh(), all, options).covered);
+  const auto of = [&](const Spheres& spheres) {
+    return certify(cube_mesh(), spheres, {.external = &box});
+  };
+  const Spheres all = grid_of_spheres(n);
+  const double radius = all.front().radius;
+  EXPECT_TRUE(of(all).covered);
 
   // Spheres that only just meet: nothing is open, but that is not proved, and so not said.
-  std::vector<Sphere> tight = all;
-  for (Sphere& s : tight) s.radius = kRoot3 / (2 * n) * (1 + 1e-9);
-  const Certificate unproved = certify(cube_mesh(), tight, options);
+  const Certificate unproved = of(grid_of_spheres(n, 1 + 1e-9));
   EXPECT_FALSE(unproved.covered);
   EXPECT_EQ(unproved.uncovered_depth.lower, 0.0);
   EXPECT_GT(unproved.uncovered_depth.upper, 0.0);
 
-  std::vector<Sphere> hollow = all;
+  Spheres hollow = all;
   hollow.erase(hollow.begin() + (n * n * n) / 2);
-  // The middle of the middle cell, to the spheres of the cells beside it.
-  const double in_the_middle = 1.0 / n - all.front().radius;
-  const Certificate inner = certify(cube_mesh(), hollow, options);
+  const Certificate inner = of(hollow);
   EXPECT_FALSE(inner.covered);
   EXPECT_EQ(inner.surface_depth.upper, 0.0);
-  EXPECT_LE(inner.solid_depth.lower, in_the_middle);
-  EXPECT_GE(inner.solid_depth.upper, in_the_middle);
-  EXPECT_NEAR(inner.solid_depth.lower, in_the_middle, 1e-3);
-  EXPECT_NEAR(inner.solid_depth.upper, in_the_middle, 5e-3);
+  // The middle of the middle cell, to the spheres of the cells beside it.
+  expect_bounds(inner.solid_depth, 1.0 / n - radius, 5e-3);
+  EXPECT_NEAR(inner.solid_depth.lower, 1.0 / n - radius, 1e-3);
   EXPECT_NEAR((inner.deepest_leak - kMiddle).norm(), 0.0, 0.01);
 
-  std::vector<Sphere> cut = all;
-  cut.erase(cut.begin());
-  const double at_the_corner = Vector3d(1.5 / n, 0.5 / n, 0.5 / n).norm() - all.front().radius;
-  const Certificate outer = certify(cube_mesh(), cut, options);
-  EXPECT_LE(outer.uncovered_depth.lower, at_the_corner);
-  EXPECT_GE(outer.uncovered_depth.upper, at_the_corner);
+  const Certificate outer = of(Spheres(all.begin() + 1, all.end()));
+  const double at_the_corner = Vector3d(1.5 / n, 0.5 / n, 0.5 / n).norm() - radius;
+  expect_bounds(outer.uncovered_depth, at_the_corner, 1e-2);
   EXPECT_NEAR(outer.uncovered_depth.lower, at_the_corner, 5e-3);
-  EXPECT_NEAR(outer.uncovered_depth.upper, at_the_corner, 1e-2);
   EXPECT_NEAR(outer.deepest_leak.norm(), 0.0, 0.02);
 }
 
 // Where spheres meet in a point of the surface, no piece of it is ever in one of them. The proof
 // must come to an end however close it is told to look.
 TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
-  const int n = 3;
-  std::vector<Sphere> touching = grid_of_spheres(n);
-  for (Sphere& s : touching) s.radius = kRoot3 / (2 * n) * (1 - 1e-15);
   const ExternalSpheres box = box_of(cube_mesh());
-  CertifyOptions options;
-  options.external = &box;
-  options.resolution = 1e-300;
-  const Certificate unproved = certify(cube_mesh(), touching, options);
+  const Certificate unproved =
+      certify(cube_mesh(), grid_of_spheres(3, 1 - 1e-15), {.external = &box, .resolution = 1e-300});
   EXPECT_FALSE(unproved.covered);
   EXPECT_GT(unproved.uncovered_depth.upper, 0.0);
   EXPECT_LT(unproved.uncovered_depth.upper, 1e-11);
@@ -157,26 +140,20 @@ TEST(Certificate, TheSmallestResolutionIsThatOfTheCoordinates) {
 // does a part that is not closed take its closed neighbours' inside away.
 TEST(Certificate, SpheresInASealedHollowDoNotProtrude) {
   const auto cube = [](double low, double high) {
-    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    motion.translation() = Vector3d::Constant(low);
-    TriangleMesh mesh = cube_mesh();
-    for (Vector3d& v : mesh.vertices) v *= high - low;
-    return moved(mesh, motion);
+    return box_mesh(Vector3d::Constant(low), Vector3d::Constant(high));
   };
   TriangleMesh sheet = cube(0.4, 0.6);
   sheet.triangles.resize(2);
   const TriangleMesh hollow = joined(cube_mesh(), inverted(cube(0.2, 0.8)));
-  const int n = 3;
-  const std::vector<Sphere> spheres = grid_of_spheres(n);
-  const double beyond_a_face = spheres.front().radius - 0.5 / n;
-  CertifyOptions options;
-  options.protrusion_tolerance = 1e-3;
+  const Spheres spheres = grid_of_spheres(3);
+  const double beyond_a_face = spheres.front().radius - 0.5 / 3;
   const ExternalSpheres box = box_of(cube_mesh());
-  options.external = &box;
   const std::vector<TriangleMesh> meshes = {joined(hollow, sheet), joined(hollow, cube(0.4, 0.6)),
                                             hollow, cube_mesh()};
   for (const TriangleMesh& mesh : effort(meshes, 1)) {
-    const Bounds protrusion = certify(mesh, spheres, options).protrusion_over_mesh.value();
+    const Certificate of_mesh =
+        certify(mesh, spheres, {.external = &box, .protrusion_tolerance = 1e-3});
+    const Bounds protrusion = of_mesh.protrusion_over_mesh.value();
     EXPECT_LE(protrusion.lower, beyond_a_face);
     EXPECT_GE(protrusion.upper, beyond_a_face);
     EXPECT_LT(protrusion.upper, 1.05 * beyond_a_face);
@@ -189,14 +166,11 @@ TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
   // A bar: the flood is quick there.
   const TriangleMesh bar = box_mesh({0, 0, 0}, {1, 0.2, 0.2});
   const double radius = 0.04;
-  std::vector<Sphere> spheres;
-  for (int i = 0; i <= 20; ++i) {
-    for (int k = 0; k <= 4; ++k) {
-      for (int m = 0; m <= 4; ++m) {
-        const bool inner = i % 20 != 0 && k % 4 != 0 && m % 4 != 0;
-        if (!inner) spheres.push_back({Vector3d(i, k, m) / 20.0, radius});
-      }
-    }
+  Spheres spheres;
+  for (int i = 0; i < 21 * 25; ++i) {
+    const int x = i / 25, y = i / 5 % 5, z = i % 5;
+    const bool inner = x % 20 != 0 && y % 4 != 0 && z % 4 != 0;
+    if (!inner) spheres.push_back({Vector3d(x, y, z) / 20.0, radius});
   }
   // From the axis, half way between two rings of spheres.
   const double depth = std::hypot(0.1, 0.025) - radius;
@@ -204,10 +178,8 @@ TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
     const Certificate certificate = certify(mesh, spheres);
     EXPECT_FALSE(certificate.covered);
     EXPECT_EQ(certificate.surface_depth.upper, 0.0);
+    expect_bounds(certificate.solid_depth, depth, 0.002);
     EXPECT_NEAR(certificate.solid_depth.lower, depth, 0.001);
-    EXPECT_NEAR(certificate.solid_depth.upper, depth, 0.002);
-    EXPECT_LE(certificate.solid_depth.lower, depth);
-    EXPECT_GE(certificate.solid_depth.upper, depth);
     const Vector3d& leak = certificate.deepest_leak;
     EXPECT_NEAR((leak - Vector3d(leak.x(), 0.1, 0.1)).norm(), 0.0, 0.01);
   }
@@ -223,38 +195,20 @@ TEST(Certificate, AHollowSetIsNotACoverEvenWithoutExternalSpheres) {
 }
 
 TEST(Certificate, TheProtrusionOfOneSphereAroundACubeIsExact) {
-  const double radius = 1.0;
-  const std::vector<Sphere> sphere{{kMiddle, radius}};
   const ExternalSpheres box = box_of(cube_mesh());
-  CertifyOptions options;
-  options.external = &box;
-  const Certificate certificate = certify(cube_mesh(), sphere, options);
-  EXPECT_TRUE(certificate.covered);
+  const Certificate near = certify(cube_mesh(), Spheres{{kMiddle, 1.0}}, {.external = &box});
+  EXPECT_TRUE(near.covered);
   // Above the middle of a face.
-  const double exact = radius - 0.5;
-  ASSERT_TRUE(certificate.protrusion_over_simplified_max.has_value());
-  EXPECT_GE(*certificate.protrusion_over_simplified_max, exact);
-  EXPECT_NEAR(*certificate.protrusion_over_simplified_max, exact, 1e-9);
-  ASSERT_TRUE(certificate.protrusion_over_mesh.has_value());
-  EXPECT_LE(certificate.protrusion_over_mesh->lower, exact);
-  EXPECT_GE(certificate.protrusion_over_mesh->upper, exact);
-  EXPECT_NEAR(certificate.protrusion_over_mesh->lower, exact, 0.03);
-  EXPECT_NEAR(certificate.protrusion_over_mesh->upper, exact, 0.03);
-  ASSERT_TRUE(certificate.volume_ratio.has_value());
-  EXPECT_NEAR(*certificate.volume_ratio, 4.0 / 3.0 * std::numbers::pi, 0.05);
-}
-
-TEST(Certificate, ASphereFarOffProtrudesByItsDistance) {
-  const std::vector<Sphere> spheres{{kMiddle, 0.9}, {{4, 0.5, 0.5}, 0.25}};
-  const ExternalSpheres box = box_of(cube_mesh());
-  CertifyOptions options;
-  options.external = &box;
-  const Certificate certificate = certify(cube_mesh(), spheres, options);
-  EXPECT_GE(*certificate.protrusion_over_simplified_max, 3.25);
-  EXPECT_LE(*certificate.protrusion_over_simplified_max, 3.26);
-  EXPECT_LE(certificate.protrusion_over_mesh->lower, 3.25);
-  EXPECT_GE(certificate.protrusion_over_mesh->upper, 3.25);
-  EXPECT_LE(certificate.protrusion_over_mesh->upper, 3.4);
+  expect_bounds(near.protrusion_over_mesh.value(), 0.5, 0.03);
+  EXPECT_GE(near.protrusion_over_simplified_max.value(), 0.5);
+  EXPECT_NEAR(*near.protrusion_over_simplified_max, 0.5, 1e-9);
+  EXPECT_NEAR(near.volume_ratio.value(), 4.0 / 3.0 * std::numbers::pi, 0.05);
+  // Far off, by its distance.
+  const Certificate far =
+      certify(cube_mesh(), Spheres{{kMiddle, 0.9}, {{4, 0.5, 0.5}, 0.25}}, {.external = &box});
+  EXPECT_GE(far.protrusion_over_simplified_max.value(), 3.25);
+  EXPECT_LE(*far.protrusion_over_simplified_max, 3.26);
+  expect_bounds(far.protrusion_over_mesh.value(), 3.25, 0.15);
 }
 
 TEST(Certificate, AnEmptySetCoversNothing) {
@@ -265,7 +219,8 @@ TEST(Certificate, AnEmptySetCoversNothing) {
   };
   for (const TriangleMesh& mesh :
        effort(std::vector{thin(cube_mesh()), thin(open_box()), thin(soup(5, 1))}, 1)) {
-    const Certificate certificate = certify(mesh, {}, flooded());
+    const Certificate certificate =
+        certify(mesh, {}, {.resolution = kSanitized ? 1.0 / 512.0 : CertifyOptions{}.resolution});
     EXPECT_FALSE(certificate.covered);
     EXPECT_EQ(certificate.uncovered_depth.upper, kInfinity);
     EXPECT_EQ(certificate.sphere_count, 0U);
@@ -276,22 +231,19 @@ TEST(Certificate, AnEmptySetCoversNothing) {
 // A cube whose corners eight external spheres take: what remains is furthest from the middle where
 // two of them and a face of the cube meet, at (1/2, y, 0) with 1/4 + y^2 = R^2.
 TEST(Certificate, TheDepthOfALeakInACurvedSolidIsExact) {
+  // A mesh in the middle, for which the cube is box enough.
+  const TriangleMesh mesh = box_mesh(Vector3d::Constant(0.45), Vector3d::Constant(0.55));
   ExternalSpheres external = box_of(cube_mesh());
   for (const double taken : effort(std::vector{0.6, 0.55, 0.7}, 1)) {
     external.spheres.clear();
     for (int i = 0; i < 8; ++i) {
       external.spheres.push_back({Vector3d(i & 1, i >> 1 & 1, i >> 2 & 1), taken});
     }
-    const double y = std::sqrt(taken * taken - 0.25);
-    const double furthest = Vector3d(0.0, 0.5 - y, 0.5).norm();
-    CertifyOptions options;
-    options.external = &external;
+    const double furthest = Vector3d(0.0, 0.5 - std::sqrt(taken * taken - 0.25), 0.5).norm();
     for (const double radius : {0.2, furthest - 0.01, furthest + 1e-3}) {
       SCOPED_TRACE(radius);
-      // A mesh in the middle, for which the cube is box enough.
       const Certificate certificate =
-          certify(box_mesh(Vector3d::Constant(0.45), Vector3d::Constant(0.55)),
-                  std::vector<Sphere>{{kMiddle, radius}}, options);
+          certify(mesh, Spheres{{kMiddle, radius}}, {.external = &external});
       const double depth = std::max(0.0, furthest - radius);
       EXPECT_EQ(certificate.covered, depth == 0.0);
       EXPECT_LE(certificate.solid_depth.lower, depth * (1.0 + 1e-12));
@@ -309,68 +261,310 @@ TEST(Certificate, TheBoundsOfTheDepthHoldAgainstSampling) {
   for (const NamedMesh& named : zoo_to_fit()) {
     SCOPED_TRACE(named.name);
     const TriangleMesh& mesh = named.mesh;
-    CoverOptions options;
-    options.method = CoverMethod::kPaper;
     // The same D in both.
-    const Fit fitted = fit(
-        mesh, options, {.max_error = kSanitized ? 0.2 : 0.1, .diameter = kSanitized ? 2.0 : 4.0});
-    const auto count = static_cast<std::size_t>(effort(3000, 300));
-    const std::vector<Vector3d> surface = points_on_surface(mesh, count, random);
-    const std::vector<Vector3d> solid = points_of_solid(fitted.external, count, random);
+    const Fit fitted =
+        fit(mesh, {.method = CoverMethod::kPaper},
+            {.max_error = kSanitized ? 0.2 : 0.1, .diameter = kSanitized ? 2.0 : 4.0});
+    const std::vector<Vector3d> surface = points_on_surface(mesh, samples(3000, 300), random);
+    const std::vector<Vector3d> solid =
+        points_of_solid(fitted.external, samples(3000, 300), random);
     for (int round = 0; round < effort(3, 1); ++round) {
-      std::vector<Sphere> spheres;
+      Spheres spheres;
       for (const Sphere& s : fitted.cover.spheres) {
         if (random.unit() < 0.1) continue;
         spheres.push_back({s.center, s.radius * random.between(0.9, 1.0)});
       }
       if (spheres.empty()) continue;  // no set at all has no depth to compare
       const Certificate certificate = certificate_of(mesh, fitted, spheres);
+      const Bounds& depth = certificate.uncovered_depth;
       const Judgement on_surface = judge_cover(surface, spheres);
       const Judgement in_solid = judge_cover(solid, spheres);
       ASSERT_GE(certificate.surface_depth.upper, on_surface.depth - 1e-15L);
       ASSERT_GE(certificate.solid_depth.upper, in_solid.depth);
-      ASSERT_LE(certificate.uncovered_depth.lower, certificate.uncovered_depth.upper);
+      ASSERT_LE(depth.lower, depth.upper);
       if (certificate.covered) {
-        ASSERT_EQ(certificate.uncovered_depth.upper, 0.0);
+        ASSERT_EQ(depth.upper, 0.0);
         ASSERT_EQ(in_solid.uncovered, 0U);
         ASSERT_EQ(on_surface.uncovered, 0U);
         continue;
       }
       ++leaks;
       // The lower bound is witnessed by a point of S.
-      if (certificate.uncovered_depth.lower > 0.0) {
+      if (depth.lower > 0.0) {
         ASSERT_GE(gap_to_spheres(certificate.deepest_leak, spheres),
-                  certificate.uncovered_depth.lower * (1.0L - 1e-12L) - 1e-15L);
+                  depth.lower * (1.0L - 1e-12L) - 1e-15L);
         ASSERT_TRUE(is_in_solid(certificate.deepest_leak, fitted.external));
       }
       // The proof comes near to the truth.
-      ASSERT_LE(certificate.uncovered_depth.upper - certificate.uncovered_depth.lower,
-                0.05 * fitted.max_error + 0.05 * certificate.uncovered_depth.upper);
+      ASSERT_LE(depth.upper - depth.lower, 0.05 * fitted.max_error + 0.05 * depth.upper);
     }
   }
   EXPECT_GT(leaks, effort(10, 2));
 }
 
-TEST(Certificate, IsEqualOnAnyNumberOfThreads) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  CoverOptions fit_options;
-  fit_options.method = CoverMethod::kPaper;
-  const TriangleMesh mesh = l_bracket();
-  const Fit fitted = fit(mesh, fit_options);
-  CertifyOptions options;
-  options.external = &fitted.external;
-  std::vector<Certificate> certificates;
-  for (const int threads : {1, 2, 0}) {
-    options.threads = threads;
-    certificates.push_back(certify(mesh, fitted.cover.spheres_before_inflation, options));
+// --- few cells where external spheres end close to a curved surface ---
+
+// All vertices are equally far out: a bound by the size of cells alone needs millions of cells.
+TEST(SolidProof, LeaksOfACurvedSurfaceAreBoundedInFewCells) {
+  const TriangleMesh mesh = icosphere(2);
+  const ExternalSpheres external = place_external_spheres(mesh, {.min_external_diameter = 0.5});
+  const auto with_radius = [&](double radius) {
+    return certify(mesh, Spheres{{Vector3d::Zero(), radius}}, {.external = &external});
+  };
+  const Certificate all_over = with_radius(0.95);
+  EXPECT_NEAR(all_over.surface_depth.lower, 0.05, 1e-9);
+  EXPECT_NEAR(all_over.surface_depth.upper, 0.05, 1e-9);
+  EXPECT_EQ(all_over.solid_depth.lower, all_over.surface_depth.lower);
+  EXPECT_LE(all_over.solid_depth.upper, 0.052);
+  EXPECT_LE(all_over.pieces, 2U * mesh.triangles.size());
+  EXPECT_LE(all_over.cells, 100'000U);
+  // At vertices only: the sphere holds the middles of all facets.
+  for (const double depth : effort(std::vector{1e-5, 1e-3, 1e-8}, 1)) {
+    const Certificate leak = with_radius(1.0 - depth);
+    EXPECT_NEAR(leak.uncovered_depth.lower, depth, 1e-12);
+    EXPECT_NEAR(leak.surface_depth.upper, depth, 1e-12);
+    EXPECT_NEAR(leak.deepest_leak.norm(), 1.0, 1e-12);
   }
-  for (const Certificate& c : certificates) {
-    EXPECT_EQ(c.uncovered_depth.lower, certificates.front().uncovered_depth.lower);
-    EXPECT_EQ(c.uncovered_depth.upper, certificates.front().uncovered_depth.upper);
-    EXPECT_EQ(c.deepest_leak, certificates.front().deepest_leak);
-    EXPECT_EQ(c.protrusion_over_mesh->upper, certificates.front().protrusion_over_mesh->upper);
-    EXPECT_EQ(c.volume_ratio, certificates.front().volume_ratio);
+}
+
+// What external spheres leave is nearly a sphere, covered by one that is hardly larger.
+TEST(SolidProof, ASphereThatHardlyExceedsTheSolidIsProvedInFewCells) {
+  ExternalSpheres external;
+  external.box = {Vector3d::Constant(-1), Vector3d::Constant(1)};
+  Random random(37);
+  for (int i = 0; i < 2000; ++i) external.spheres.push_back({random.direction(), 0.75});
+  const TriangleMesh mesh = box_mesh(Vector3d::Constant(-0.1), Vector3d::Constant(0.1));
+  const Certificate tight =
+      certify(mesh, Spheres{{Vector3d::Zero(), 0.26}}, {.external = &external});
+  EXPECT_TRUE(tight.covered);
+  EXPECT_LE(tight.cells, 10'000U);
+}
+
+// What external spheres take away of the mesh is not of S, and no witness against it.
+TEST(SolidProof, BoundsAreInOrderWhereExternalSpheresPierceTheMesh) {
+  const TriangleMesh cube = cube_mesh();
+  ExternalSpheres external = box_of(cube);
+  external.spheres.push_back({{0.5, 0.5, 10.0}, 9.5});
+  // Up to where the external sphere crosses the vertical edges of the cube.
+  const double edge = 10.0 - std::sqrt(9.5 * 9.5 - 0.5);
+  const double radius = std::sqrt(0.5 + edge * edge) + 1e-5;
+  const Certificate pierced =
+      certify(cube, Spheres{{Vector3d(0.5, 0.5, 0.0), radius}}, {.external = &external});
+  EXPECT_EQ(pierced.solid_depth.lower, 0.0);
+  EXPECT_LE(pierced.solid_depth.upper, 1e-3);
+  EXPECT_GT(pierced.surface_depth.lower, 0.1);
+}
+
+// --- protrusion over the mesh ---
+
+Bounds protrusion_over(const TriangleMesh& mesh, const Spheres& spheres) {
+  const ExternalSpheres box = box_of(mesh);
+  return certify(mesh, spheres, {.external = &box}).protrusion_over_mesh.value();
+}
+
+// The inside of an open mesh counts for the upper bound and is further from the mesh than what is
+// seen to protrude, which that does not hide.
+TEST(ProtrusionOverMesh, IsWitnessedBeyondAnOpenMeshToo) {
+  const TriangleMesh loosely_shut =
+      joined(open_box(), box_mesh({0.0, 0.0, 1.001}, {1.0, 1.0, 1.01}));
+  const Bounds protrusion = protrusion_over(loosely_shut, {{kMiddle, 0.7}});
+  EXPECT_GE(protrusion.upper, 0.5);
+  EXPECT_GE(protrusion.lower, 0.19);
+  EXPECT_LE(protrusion.lower, 0.2);
+}
+
+// The bounds of the whole sphere meet; a search alone stops at 2 %. About the origin, and turned.
+TEST(ProtrusionOverMesh, OfASphereOverAFaceIsExact) {
+  Random random(41);
+  for (int i = 0; i < effort(3, 1); ++i) {
+    TriangleMesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
+    const Eigen::Matrix3d turn = random.rotation().toRotationMatrix();
+    for (Vector3d& vertex : cube.vertices) vertex = turn * vertex;
+    const ExternalSpheres external = place_external_spheres(cube, {.min_external_diameter = 1.0});
+    for (const double radius : {1.0, 1.3, 1.7}) {
+      const Spheres spheres{{Vector3d::Zero(), radius}, {turn.col(0) * 0.2, 0.5}};
+      const Bounds protrusion =
+          certify(cube, spheres, {.external = &external}).protrusion_over_mesh.value();
+      EXPECT_NEAR(protrusion.upper, radius - 1.0, 1e-12);
+      EXPECT_NEAR(protrusion.lower, radius - 1.0, 1e-12);
+    }
   }
+}
+
+const Vector3d kFar(4e7, -3e7, 7e7);
+
+// Cells that are as small as the resolution of coordinates contain no point that is computed to be
+// in such spheres.
+TEST(ProtrusionOverMesh, OfPointsFarFromTheOriginEnds) {
+  const TriangleMesh cube = box_mesh(kFar, kFar + Vector3d::Ones());
+  for (const double radius : {0.0, 1e-9, 1e-7}) {
+    const Bounds protrusion =
+        protrusion_over(cube, {{kFar + Vector3d(0.5, 0.5, 3.0), radius}, {kFar + kMiddle, radius}});
+    EXPECT_NEAR(protrusion.upper, 2.0, 1e-6);
+    EXPECT_NEAR(protrusion.lower, 2.0, 1e-6);
+  }
+}
+
+// The bound of the large sphere, whose centre is near a hollow, is far too large, so that cells
+// about the point have to be searched, whatever their size.
+TEST(ProtrusionOverMesh, OfAPointFarFromTheOriginIsBoundedByItsCells) {
+  const TriangleMesh mesh =
+      joined(box_mesh(kFar, kFar + Vector3d::Constant(10.0)),
+             inverted(box_mesh(kFar + Vector3d::Constant(4.75), kFar + Vector3d::Constant(5.25))));
+  Random random(43);
+  for (int i = 0; i < effort(40, 10); ++i) {
+    const Vector3d point =
+        kFar + Vector3d(random.between(1, 9), random.between(1, 9), random.between(10.9, 11.1));
+    const double away = point.z() - (kFar.z() + 10.0);
+    const Bounds protrusion =
+        protrusion_over(mesh, {{kFar + Vector3d(5.0, 5.0, 5.55), 2.0}, {point, 0.0}});
+    EXPECT_GE(protrusion.upper, away);
+    EXPECT_LE(protrusion.upper, away + 1e-3);
+    EXPECT_LE(protrusion.lower, away);
+  }
+}
+
+// --- volumes ---
+
+constexpr double kBall = 4.0 / 3.0 * std::numbers::pi;
+
+double ratio(const TriangleMesh& mesh, const Spheres& spheres) {
+  return internal::estimate_volume_ratio(mesh, spheres).value();
+}
+
+// By a sphere of a known volume.
+double volume_of(const TriangleMesh& mesh) {
+  return kBall / ratio(mesh, {{Vector3d::Zero(), 1.0}});
+}
+
+TEST(VolumeRatio, WhatSeveralSpheresHoldCountsOnce) {
+  const TriangleMesh cube = cube_mesh();
+  const Sphere sphere{kMiddle, 1.0};
+  EXPECT_NEAR(ratio(cube, {sphere}), kBall, 0.01 * kBall);
+  EXPECT_NEAR(ratio(cube, {sphere, sphere}), kBall, 0.01 * kBall);
+  // Two unit spheres whose centres are 1 apart share a lens of 5 pi / 12.
+  const double both = 2.0 * kBall - 5.0 * std::numbers::pi / 12.0;
+  EXPECT_NEAR(ratio(cube, {sphere, {kMiddle + Vector3d::UnitX(), 1.0}}), both, 0.01 * both);
+}
+
+TEST(VolumeRatio, OverlapsOfTheMeshCountOnceAndHollowsNot) {
+  const TriangleMesh cube = cube_mesh();
+  EXPECT_NEAR(volume_of(joined(cube, box_mesh({0.5, 0, 0}, {1.5, 1, 1}))), 1.5, 0.015);
+  EXPECT_NEAR(volume_of(inverted(cube)), 1.0, 0.01);
+  const TriangleMesh hole = box_mesh(Vector3d::Constant(0.25), Vector3d::Constant(0.75));
+  EXPECT_NEAR(volume_of(joined(cube, inverted(hole))), 0.875, 0.009);
+}
+
+TEST(VolumeRatio, ThinPlatesAndPipesInAnyDirection) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Vector3d size(4.0, 3.0, 2.0);
+    size[axis] = 0.01;
+    EXPECT_NEAR(volume_of(box_mesh(Vector3d::Zero(), size)), size.prod(), 0.01 * size.prod());
+  }
+  const double ring = 60.0 * std::sin(2.0 * std::numbers::pi / 60.0) / 2.0 * (1.0 - 0.9 * 0.9);
+  EXPECT_NEAR(volume_of(pipe(1.0, 0.9, 10.0, 60)), 10.0 * ring, 0.02 * 10.0 * ring);
+}
+
+// Two grains 100 apart, between which the lines pass, and a sheet of two faces.
+TEST(VolumeRatio, IsAbsentWhereNothingIsMet) {
+  const TriangleMesh grains = joined(box_mesh({0, 0, 0}, {0.001, 0.001, 0.001}),
+                                     box_mesh({100, 0, 0}, {100.001, 0.001, 0.001}));
+  const TriangleMesh sheet{{Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY()},
+                           {{0, 1, 2}, {0, 2, 1}}};
+  const Spheres around{{Vector3d(50.0, 0.0, 0.0), 51.0}};
+  const Spheres far_apart{{Vector3d::Zero(), 0.001}, {Vector3d::Constant(100.0), 0.001}};
+  EXPECT_EQ(internal::estimate_volume_ratio(grains, around), std::nullopt);
+  EXPECT_EQ(internal::estimate_volume_ratio(cube_mesh(), far_apart), std::nullopt);
+  EXPECT_EQ(internal::estimate_volume_ratio(sheet, around), std::nullopt);
+}
+
+// Without external spheres S is the box.
+TEST(FilledVolume, IsWhatTheSolidHasMoreThanTheMesh) {
+  const TriangleMesh cube = cube_mesh();
+  ExternalSpheres external;
+  external.box = {Vector3d::Constant(-1.0), Vector3d::Constant(2.0)};
+  const auto filled = [&](const TriangleMesh& mesh) {
+    return internal::estimate_filled_volume(mesh, external);
+  };
+  EXPECT_NEAR(filled(cube).volume, 26.0, 0.1);
+  EXPECT_LT(std::abs(filled(cube).volume - 26.0), 4.0 * filled(cube).error + 1e-9);
+  EXPECT_NEAR(filled(inverted(cube)).volume, 26.0, 0.1);
+  // A sphere that touches the cube, cut by the box on one side, and twice the same.
+  external.spheres = {{Vector3d(1.75, 0.5, 0.5), 0.75}, {Vector3d(1.75, 0.5, 0.5), 0.75}};
+  const double height = 0.5;  // of the cap that is cut off
+  const double cut = std::numbers::pi * height * height * (3.0 * 0.75 - height) / 3.0;
+  EXPECT_NEAR(filled(cube).volume, 26.0 - (kBall * std::pow(0.75, 3) - cut), 0.1);
+}
+
+// --- refusals ---
+
+std::string refused_cube(const Spheres& spheres, const CertifyOptions& options = {}) {
+  return refused([&] { certify(cube_mesh(), spheres, options); });
+}
+
+TEST(Certificate, BadSpheresAndOptionsAreRefusedByName) {
+  const Sphere good{kMiddle, 1.0};
+  for (const Sphere& bad :
+       {Sphere{kMiddle, kNan}, Sphere{kMiddle, -1e-9}, Sphere{kMiddle, kInfinity},
+        Sphere{{0, kNan, 0}, 1.0}, Sphere{{kInfinity, 0, 0}, 1.0}, Sphere{kMiddle, 1e300}}) {
+    EXPECT_EQ(refused_cube({good, bad}), "sphere 1");
+  }
+  for (const double bad : {-1.0, kNan, kInfinity, 2.0}) {
+    EXPECT_EQ(refused_cube({good}, {.resolution = bad}), "resolution");
+    EXPECT_EQ(refused_cube({good}, {.protrusion_tolerance = bad}), "protrusion tolerance");
+    if (bad == 2.0) continue;
+    EXPECT_EQ(refused_cube({good}, {.padding = bad}), "padding");
+  }
+  EXPECT_EQ(refused_cube({good}, {.resolution = 0.0}), "resolution");
+  EXPECT_EQ(refused([&] { certify({}, Spheres{good}, {}); }), "mesh");
+}
+
+// Without an end if they were not.
+TEST(Certificate, ExternalSpheresThatNobodyPlacedAreRefused) {
+  const Spheres good{{kMiddle, 1.0}};
+  const Spheres unusable{{kMiddle, kNan}};
+  const TriangleMesh mesh = cube_mesh();
+  const ExternalSpheres box = box_of(mesh);
+  const std::vector<double> levels{0.5};
+  std::vector<ExternalSpheres> all(8, box);
+  all[0] = {};
+  all[1].box.min().x() = kNan;
+  all[2].box.max().y() = kInfinity;
+  all[3].box.max().z() = -1.0;
+  all[4].padding = kNan;
+  all[5].padding = -1.0;
+  all[6].spheres.push_back({{0, kNan, 0}, 1.0});
+  all[7].spheres.push_back({{9, 9, 9}, -1.0});
+  for (const ExternalSpheres& bad : all) {
+    EXPECT_EQ(refused([&] { certify(mesh, good, {.external = &bad}); }), "external spheres");
+    EXPECT_EQ(refused([&] { cover(mesh, bad, {.max_error = 0.2}); }), "external spheres");
+    EXPECT_EQ(refused([&] { repair(mesh, bad, good, {.max_error = 0.2}); }), "external spheres");
+    EXPECT_EQ(refused([&] { fit_levels(mesh, bad, good, levels, {}); }), "external spheres");
+    EXPECT_EQ(refused([&] { cover_breakdown(mesh, bad, good, 0.2); }), "external spheres");
+    EXPECT_EQ(refused([&] { spheres_in_thin_parts(bad, good, 0.2); }), "external spheres");
+  }
+  EXPECT_EQ(refused([&] { cover_breakdown(mesh, box, unusable, 0.2); }), "sphere 0");
+  EXPECT_EQ(refused([&] { spheres_in_thin_parts(box, unusable, 0.2); }), "sphere 0");
+}
+
+// The gap to a sphere that grazes the mesh is known to the rounding of its radius only; halving
+// pieces of less never ends.
+TEST(Certificate, SpheresOfFarLargerSizeAreRefusedOrExaminedInFewPieces) {
+  const auto grazing = [](double radius) { return Sphere{{radius + 0.5, 0.5, 0.5}, radius}; };
+  EXPECT_EQ(refused_cube({{kMiddle, 1.0}, grazing(1e15)}), "sphere 1");
+  EXPECT_EQ(refused_cube({grazing(0x1p24)}), "sphere 0");
+  const ExternalSpheres box = box_of(cube_mesh());
+  CertifyOptions options{.external = &box};
+  if (kSanitized) options.protrusion_tolerance = 0.0;  // takes seconds there
+  // One that has nothing to do with the mesh does not hide that others cover it.
+  EXPECT_TRUE(certify(cube_mesh(), Spheres{{kMiddle, 0.9}, grazing(0x1p22)}, options).covered);
+  if (kSanitized) return;
+  options.protrusion_tolerance = 0.0;
+  const Certificate leak = certify(cube_mesh(), Spheres{grazing(0x1p22)}, options);
+  EXPECT_LE(leak.uncovered_depth.lower, 0.5 + 1e-7);  // of the corners at x = 0
+  EXPECT_GE(leak.uncovered_depth.upper, 0.5);
+  EXPECT_LE(leak.uncovered_depth.upper, 0.52);
+  EXPECT_LT(leak.pieces + leak.cells, 500'000U);
 }
 
 }  // namespace

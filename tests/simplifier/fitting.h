@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Both stages of the simplifier with lengths as shares of the model's size, for tests that fit many
-// models coarsely.
+// What the tests of the simplifier share: both stages with lengths as shares of the model's size,
+// for those that fit many models coarsely; refusals; hashes of spheres.
 
+#include "base/crc64.h"
+#include "base/error.h"
 #include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
 #include "tests/support/effort.h"
 
 #include <Eigen/Geometry>
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <ostream>
 #include <span>
 #include <string>
@@ -28,6 +34,55 @@ inline void PrintTo(CoverMethod method, std::ostream* out) {
 
 namespace spherule::test {
 
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// As effort(), of numbers of samples.
+constexpr std::size_t samples(int count, int under_sanitizers) {
+  return static_cast<std::size_t>(effort(count, under_sanitizers));
+}
+
+// The subject of the Error that the call ends in.
+template <class Call>
+std::string refused(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.subject();
+  }
+  return "accepted";
+}
+
+// The whole of its message.
+template <class Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// Of the bits of all numbers, the lowest byte first.
+inline std::uint64_t hash_of(std::span<const Sphere> spheres) {
+  std::string bytes;
+  for (const Sphere& s : spheres) {
+    for (const double x : {s.center.x(), s.center.y(), s.center.z(), s.radius}) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      for (int shift = 0; shift < 64; shift += 8) {
+        bytes.push_back(static_cast<char>(static_cast<unsigned char>(bits >> shift)));
+      }
+    }
+  }
+  return crc64(bytes);
+}
+
+// A solid without external spheres: the box of the mesh.
+inline ExternalSpheres box_of(const TriangleMesh& mesh) {
+  return place_external_spheres(mesh, {.placement = ExternalPlacement::kNone});
+}
+
 // Of the box of the vertices.
 inline double diagonal_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
@@ -36,10 +91,7 @@ inline double diagonal_of(const TriangleMesh& mesh) {
 }
 
 inline CoverOptions options_for(CoverMethod method) {
-  CoverOptions options;
-  options.method = method;
-  options.effort = effort(4, 1);
-  return options;
+  return {.method = method, .effort = effort(4, 1)};
 }
 
 struct Fit {
@@ -57,13 +109,12 @@ struct FitShares {
 };
 
 inline ExternalSpheres externals_of(const TriangleMesh& mesh, const FitShares& shares) {
-  ExternalOptions options;
-  options.placement = shares.placement;
-  options.max_error = shares.max_error * diagonal_of(mesh);
-  options.min_external_diameter = shares.diameter * options.max_error;
-  options.padding = shares.padding * options.max_error;
-  options.limit = 3000;
-  return place_external_spheres(mesh, options);
+  const double max_error = shares.max_error * diagonal_of(mesh);
+  return place_external_spheres(mesh, {.placement = shares.placement,
+                                       .min_external_diameter = shares.diameter * max_error,
+                                       .padding = shares.padding * max_error,
+                                       .max_error = max_error,
+                                       .limit = 3000});
 }
 
 // Fills in the error of `options` from the shares.
@@ -79,12 +130,11 @@ inline Fit fit(const TriangleMesh& mesh, CoverOptions options, const FitShares& 
 // Against the solid that was fitted, as closely as simplify() looks, and nothing but the proof.
 inline Certificate certificate_of(const TriangleMesh& mesh, const Fit& fitted,
                                   std::span<const Sphere> spheres) {
-  CertifyOptions options;
-  options.external = &fitted.external;
-  options.resolution = proof_resolution(fitted.max_error, diagonal_of(mesh));
-  options.protrusion_tolerance = 0.0;
-  options.volume = false;
-  return certify(mesh, spheres, options);
+  return certify(mesh, spheres,
+                 {.external = &fitted.external,
+                  .resolution = proof_resolution(fitted.max_error, diagonal_of(mesh)),
+                  .protrusion_tolerance = 0.0,
+                  .volume = false});
 }
 
 }  // namespace spherule::test

@@ -3,7 +3,6 @@
 // level. If a stage is changed on purpose, put the value that the failing test prints here and say
 // so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
 #include "tests/simplifier/fitting.h"
-#include "tests/simplifier/sphere_hash.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 

@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What leaks, as points and as a surface, and what repair() makes of it.
 #include "simplifier/repair.h"
 
-#include "base/error.h"
+#include "simplifier/leaks.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"
+#include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
+using Spheres = std::vector<Sphere>;
+
+const Vector3d kMiddle = Vector3d::Constant(0.5);
 
 // What repair() promises, by the certificate, by an independent proof and by samples.
-Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<Sphere> leaking,
+Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, Spheres leaking,
                        double max_error) {
   Repair result =
       repair(mesh, fitted.external, leaking, {.max_error = max_error, .effort = effort(4, 1)});
-  const std::vector<Sphere>& spheres = result.spheres;
+  const Spheres& spheres = result.spheres;
   EXPECT_EQ(spheres.size(), leaking.size() + result.added);
   double largest = 0.0;
   double total = 0.0;
@@ -44,21 +54,20 @@ Repair expect_repaired(const TriangleMesh& mesh, const Fit& fitted, std::vector<
   EXPECT_EQ(result.max_error, max_error);
   EXPECT_LE(result.protrusion_after, std::max(max_error, result.protrusion_before));
   EXPECT_TRUE(certificate_of(mesh, fitted, spheres).covered);
-  const OctreeProof proof = prove_by_octree(fitted.external, spheres, 26,
-                                            static_cast<std::size_t>(effort(300'000, 60'000)));
+  const OctreeProof proof = prove_by_octree(fitted.external, spheres, 26, samples(300'000, 60'000));
   EXPECT_NE(proof.verdict, OctreeVerdict::kLeak) << proof.point.transpose();
   Random random(91);
-  const auto count = static_cast<std::size_t>(effort(4000, 400));
+  const std::size_t count = samples(4000, 400);
   EXPECT_EQ(judge_cover(points_of_solid(fitted.external, count, random), spheres).uncovered, 0U);
   EXPECT_EQ(judge_cover(points_on_surface(mesh, count, random), spheres).uncovered, 0U);
-  std::vector<Sphere> changed;
+  Spheres changed;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (i >= leaking.size() || leaking[i].radius > 0.0) changed.push_back(spheres[i]);
   }
   const Certificate of_changed = certificate_of(mesh, fitted, changed);
   EXPECT_LE(*of_changed.protrusion_over_simplified_max, max_error);
   EXPECT_EQ(judge_protrusion(changed, mesh, fitted.external, max_error + 1e-9 * diagonal_of(mesh),
-                             static_cast<std::size_t>(effort(10, 3)), random)
+                             samples(10, 3), random)
                 .beyond,
             0U);
   return result;
@@ -71,16 +80,23 @@ Fit fit_of(const TriangleMesh& mesh, CoverMethod method = CoverMethod::kCover) {
 TEST(RepairOf, CoversThatAreWholeComeBackUnchanged) {
   const TriangleMesh mesh = l_bracket();
   const Fit fitted = fit_of(mesh);
-  const Repair result = expect_repaired(mesh, fitted, fitted.cover.spheres, fitted.max_error);
-  EXPECT_EQ(result.spheres, fitted.cover.spheres);
+  EXPECT_EQ(expect_repaired(mesh, fitted, fitted.cover.spheres, fitted.max_error).spheres,
+            fitted.cover.spheres);
 }
 
-TEST(RepairOf, NoSpheresIsACover) {
+// None at all, and spheres about points outside of S, which are all there is at the corners and may
+// not grow to hold them.
+TEST(RepairOf, NoSpheresAndSpheresBesideTheSolid) {
   const TriangleMesh mesh = cube_mesh();
-  const Fit fitted = fit_of(mesh);
-  const Repair result = expect_repaired(mesh, fitted, {}, fitted.max_error);
-  EXPECT_EQ(result.inflated, 0U);
-  EXPECT_LE(result.added, fitted.cover.spheres.size() + 3);
+  const Fit fitted = fit(mesh, options_for(CoverMethod::kCover), {.max_error = 0.07});
+  Spheres beside;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d at(corner % 2, corner / 2 % 2, corner / 4);
+    beside.push_back({at + 0.08 * (at - kMiddle), 0.04});
+  }
+  const Repair of_none = expect_repaired(mesh, fitted, {}, fitted.max_error);
+  EXPECT_LE(of_none.added, fitted.cover.spheres.size() + 3);
+  EXPECT_EQ(expect_repaired(mesh, fitted, beside, fitted.max_error).inflated, 0U);
 }
 
 TEST(RepairOf, CoversWithoutSomeOfTheirSpheres) {
@@ -90,7 +106,7 @@ TEST(RepairOf, CoversWithoutSomeOfTheirSpheres) {
     const TriangleMesh mesh = mesh_named(name);
     const Fit fitted = fit_of(mesh);
     Random random(92);
-    std::vector<Sphere> leaking = fitted.cover.spheres;
+    Spheres leaking = fitted.cover.spheres;
     std::size_t taken = 0;
     for (; taken < 3 && leaking.size() > 1; ++taken) {
       leaking.erase(leaking.begin() + static_cast<std::ptrdiff_t>(random.index(leaking.size())));
@@ -110,7 +126,7 @@ TEST(RepairOf, CoversWithShrunkSpheresGrowsThemAgain) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = mesh_named(name);
     const Fit fitted = fit_of(mesh);
-    std::vector<Sphere> leaking = fitted.cover.spheres;
+    Spheres leaking = fitted.cover.spheres;
     double taken = 0.0;
     for (Sphere& sphere : leaking) {
       taken += 0.03 * sphere.radius;
@@ -142,23 +158,10 @@ TEST(RepairOf, SpheresAnywhere) {
     Random random(93);
     const Eigen::AlignedBox3d box(Vector3d(fitted.external.box.min() - 0.3 * Vector3d::Ones()),
                                   Vector3d(fitted.external.box.max() + 0.3 * Vector3d::Ones()));
-    std::vector<Sphere> junk;
+    Spheres junk;
     for (int i = 0; i < 20; ++i) junk.push_back({random.in_box(box), random.between(0.0, 0.3)});
     expect_repaired(mesh, fitted, junk, fitted.max_error);
   }
-}
-
-// Spheres about points outside of S are all there is at the corners, and may not grow to hold them.
-TEST(RepairOf, SpheresBesideTheSolid) {
-  const TriangleMesh mesh = cube_mesh();
-  const Fit fitted = fit(mesh, options_for(CoverMethod::kCover), {.max_error = 0.07});
-  std::vector<Sphere> leaking;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector3d at(corner % 2, corner / 2 % 2, corner / 4);
-    leaking.push_back({at + 0.08 * (at - Vector3d::Constant(0.5)), 0.04});
-  }
-  const Repair result = expect_repaired(mesh, fitted, leaking, fitted.max_error);
-  EXPECT_EQ(result.inflated, 0U);
 }
 
 // Two prongs that spheres stand on, one of them far out; what leaks between them is mended by
@@ -168,7 +171,7 @@ TEST(RepairOf, OneFarSphereDoesNotLicenseTheOthers) {
                                      box_mesh({40.0, 0.0, 0.0}, {50.0, 10.0, 60.0}));
   const ExternalSpheres external =
       place_external_spheres(prongs, {.min_external_diameter = 16.0, .max_error = 4.0});
-  std::vector<Sphere> leaking;
+  Spheres leaking;
   for (const double x : {5.0, 45.0}) {
     for (const double z : {10.0, 30.0, 50.0}) leaking.push_back({{x, 5.0, z}, 7.0});
   }
@@ -193,7 +196,7 @@ TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TriangleMesh mesh = l_bracket();
   const Fit fitted = fit_of(mesh);
-  std::vector<Sphere> leaking = fitted.cover.spheres;
+  Spheres leaking = fitted.cover.spheres;
   leaking.pop_back();
   for (Sphere& sphere : leaking) sphere.radius *= 0.98;
   const auto on = [&](int threads) {
@@ -201,7 +204,7 @@ TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
                   {.max_error = fitted.max_error, .effort = 2, .threads = threads})
         .spheres;
   };
-  const std::vector<Sphere> first = on(1);
+  const Spheres first = on(1);
   EXPECT_EQ(on(2), first);
   EXPECT_EQ(on(0), first);
 }
@@ -209,18 +212,133 @@ TEST(RepairOf, IsEqualInEveryRunOnAnyNumberOfThreads) {
 TEST(RepairOf, RefusesWhatItCannotUse) {
   const TriangleMesh mesh = cube_mesh();
   const Fit fitted = fit_of(mesh);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double bad : {-1.0, nan, 1e300, 1e-17}) {
-    EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = bad}), Error) << bad;
+  const auto subject = [&](const RepairOptions& options, const Spheres& spheres = {}) {
+    return refused([&] { repair(mesh, fitted.external, spheres, options); });
+  };
+  for (const double bad : {-1.0, kNan, 1e300, 1e-17}) {
+    EXPECT_NE(subject({.max_error = bad}), "accepted") << bad;
   }
-  const std::vector<Sphere> unusable = {{Vector3d::Zero(), nan}};
-  EXPECT_THROW(repair(mesh, fitted.external, unusable, {.max_error = 0.1}), Error);
-  EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .effort = -1}), Error);
-  const Zone upside_down{.shape = Sphere{Vector3d::Zero(), -20.0}, .max_error = 0.05};
-  EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .zones = {upside_down}}),
-               Error);
-  const Zone nowhere{.shape = Sphere{Vector3d::Zero(), 1.0}, .max_error = nan};
-  EXPECT_THROW(repair(mesh, fitted.external, {}, {.max_error = 0.1, .zones = {nowhere}}), Error);
+  EXPECT_NE(subject({.max_error = 0.1}, {{Vector3d::Zero(), kNan}}), "accepted");
+  EXPECT_NE(subject({.max_error = 0.1, .effort = -1}), "accepted");
+  for (const Zone& bad : {Zone{.shape = Sphere{Vector3d::Zero(), -20.0}, .max_error = 0.05},
+                          Zone{.shape = Sphere{Vector3d::Zero(), 1.0}, .max_error = kNan}}) {
+    EXPECT_NE(subject({.max_error = 0.1, .zones = {bad}}), "accepted");
+  }
+}
+
+// --- leak points ---
+
+// The distance to the surface of the unit cube.
+double from_cube(const Vector3d& p) {
+  const Vector3d inside = p.cwiseMin(Vector3d::Ones() - p);
+  const Vector3d outside = (-inside).cwiseMax(0.0);
+  return inside.minCoeff() >= 0.0 ? inside.minCoeff() : outside.norm();
+}
+
+TEST(LeakPoints, AreLeaksOfTheSurfaceAndMissNone) {
+  Random random(20);
+  const Eigen::AlignedBox3d room(Vector3d::Constant(-0.2), Vector3d::Constant(1.2));
+  const LeakPointOptions options{.spacing = 0.02, .separation = 0.04, .max_count = 10000};
+  const double diagonal = std::sqrt(3.0);
+  std::size_t leaks_seen = 0;
+  for (int round = 0; round < effort(12, 3); ++round) {
+    Spheres spheres;
+    for (int i = 0; i < 12; ++i) spheres.push_back({random.in_box(room), random.between(0.1, 0.6)});
+    const auto leaks = leak_points(cube_mesh(), spheres, options);
+    leaks_seen += leaks.size();
+    for (std::size_t i = 0; i < leaks.size(); ++i) {
+      EXPECT_LT(from_cube(leaks[i].point), 1e-15);
+      EXPECT_GT(leaks[i].depth, 0.0);
+      EXPECT_GE(gap_to_spheres(leaks[i].point, spheres), Real{leaks[i].depth});
+      EXPECT_NEAR(static_cast<double>(gap_to_spheres(leaks[i].point, spheres)), leaks[i].depth,
+                  1e-14);
+      if (i > 0) {
+        EXPECT_GE(leaks[i - 1].depth, leaks[i].depth);
+      }
+      for (std::size_t k = 0; k < i; ++k) {
+        EXPECT_GT((leaks[i].point - leaks[k].point).norm(), options.separation * diagonal);
+      }
+    }
+    // Every point of the surface that is deeper than the samples are apart has a leak nearby.
+    const double reach = (options.separation + options.spacing) * diagonal;
+    for (int sample = 0; sample < effort(500, 100); ++sample) {
+      Vector3d p = random.in_box({Vector3d::Zero(), Vector3d::Ones()});
+      p[static_cast<int>(random.index(3))] = random.index(2) == 0 ? 0.0 : 1.0;
+      if (gap_to_spheres(p, spheres) < options.spacing * diagonal) continue;
+      EXPECT_TRUE(std::any_of(leaks.begin(), leaks.end(), [&](const LeakPoint& leak) {
+        return (leak.point - p).norm() <= reach;
+      }));
+    }
+  }
+  EXPECT_GT(leaks_seen, 100u);
+}
+
+TEST(LeakPoints, AreTheCornersThatASphereInTheMiddleLeaves) {
+  const Spheres sphere{{kMiddle, 0.8}};
+  const auto leaks = leak_points(cube_mesh(), sphere);
+  ASSERT_GE(leaks.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(leaks[i].depth, std::sqrt(0.75) - 0.8, 1e-14);
+  }
+  EXPECT_EQ(leak_points(cube_mesh(), sphere, {.max_count = 3}).size(), 3u);
+}
+
+// Far from the origin the samples that are requested are closer than coordinates are to each other.
+TEST(LeakPoints, PiecesThatRoundingCannotHalveAreNotHalved) {
+  TriangleMesh mesh = cube_mesh();
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex.x() += 9e14;
+  EXPECT_FALSE(leak_points(mesh, Spheres{{{5, 0, 0}, 0.3}}).empty());
+}
+
+// --- leak surface ---
+
+// Twice the area, and outwards.
+Vector3d normal_of(const std::array<Vector3d, 3>& t) {
+  return (t[1] - t[0]).cross(t[2] - t[0]);
+}
+
+// A sphere about the middle of the unit cube covers a disc of each face.
+TEST(LeakSurface, IsTheCubeWithoutADiscOfEachFace) {
+  for (const double radius : {0.52, 0.6, 0.7}) {
+    const LeakSurface leaks = leak_surface(cube_mesh(), Spheres{{kMiddle, radius}});
+    const double disc = std::numbers::pi * (radius * radius - 0.25);
+    ASSERT_EQ(leaks.depths.size(), leaks.mesh.vertices.size());
+    for (std::size_t i = 0; i < leaks.depths.size(); ++i) {
+      const Vector3d& point = leaks.mesh.vertices[i];
+      // On a face, as deep as it is told; what is interpolated is not far off.
+      EXPECT_LT(std::min(point.minCoeff(), 1.0 - point.maxCoeff()), 1e-12);
+      const double depth = (point - kMiddle).norm() - radius;
+      EXPECT_NEAR(leaks.depths[i], depth, leaks.depths[i] > 0.0 ? 1e-12 : 1e-4);
+    }
+    double area = 0.0;
+    for (const Eigen::Vector3i& triangle : leaks.mesh.triangles) {
+      const std::array<Vector3d, 3> t = corners_of(leaks.mesh, triangle);
+      area += 0.5 * normal_of(t).norm();
+      EXPECT_GE(normal_of(t).dot((t[0] + t[1] + t[2]) / 3.0 - kMiddle), 0.0);
+    }
+    EXPECT_NEAR(area, 6.0 * (1.0 - disc), 1e-3) << radius;
+  }
+}
+
+// --- of both ---
+
+TEST(Leaks, AreNoneWhereAllIsCoveredOrNothingIs) {
+  for (const Spheres& spheres : {Spheres{{kMiddle, 0.9}}, Spheres{}}) {
+    EXPECT_TRUE(leak_points(cube_mesh(), spheres).empty());
+    EXPECT_TRUE(leak_surface(cube_mesh(), spheres).mesh.triangles.empty());
+  }
+}
+
+TEST(Leaks, BadInputIsRefused) {
+  const Spheres sphere{{Vector3d::Zero(), 1.0}};
+  EXPECT_THROW(leak_points({}, sphere), Error);
+  EXPECT_THROW(leak_surface({}, sphere), Error);
+  EXPECT_THROW(leak_points(cube_mesh(), Spheres{{Vector3d::Zero(), -1.0}}), Error);
+  for (const double share : {0.0, -1.0, kNan, kInfinity}) {
+    EXPECT_THROW(leak_points(cube_mesh(), sphere, {.spacing = share}), Error);
+    EXPECT_THROW(leak_points(cube_mesh(), sphere, {.separation = share}), Error);
+    EXPECT_THROW(leak_surface(cube_mesh(), sphere, {.spacing = share}), Error);
+  }
 }
 
 }  // namespace

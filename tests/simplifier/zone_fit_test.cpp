@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Covers with zones of their own E: the spheres keep both errors, the certificate knows it, and the
 // tool that made D does not notice the simplification.
-#include "base/error.h"
 #include "geometry/mesh_distance.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
@@ -14,7 +13,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace spherule::test::zone_fit_test {
+namespace spherule::test {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -66,11 +65,7 @@ ZoneJudgement judge_zone(const Zone& zone, const std::vector<Sphere>& spheres,
 }
 
 SimplifyOptions options_with(std::vector<Zone> zones) {
-  SimplifyOptions options;
-  options.max_error = kError;
-  options.zones = std::move(zones);
-  options.effort = effort(4, 1);
-  return options;
+  return {.max_error = kError, .zones = std::move(zones), .effort = effort(4, 1)};
 }
 
 std::vector<Zone> zones_of_all_shapes() {
@@ -102,13 +97,12 @@ TEST(ZoneFit, NoPointOfASphereInAZoneIsFurtherFromTheSolidThanTheZoneAllows) {
         << i;
   }
   // G1 and G2 as ever.
-  const auto points =
-      points_of_solid(fit.external, static_cast<std::size_t>(effort(20000, 2000)), random);
+  const auto points = points_of_solid(fit.external, samples(20000, 2000), random);
   EXPECT_EQ(judge_cover(points, fit.cover.spheres).uncovered, 0U);
-  EXPECT_EQ(judge_protrusion(fit.cover.spheres, mesh, fit.external, kError,
-                             static_cast<std::size_t>(effort(200, 40)), random)
-                .beyond,
-            0U);
+  EXPECT_EQ(
+      judge_protrusion(fit.cover.spheres, mesh, fit.external, kError, samples(200, 40), random)
+          .beyond,
+      0U);
 }
 
 // A small zone makes its surroundings fine, not the whole part.
@@ -160,26 +154,21 @@ TEST(ZoneFit, ZonesSurviveTheRecordAndAnAuditPlacesTheSameExternalSpheres) {
 }
 
 TEST(ZoneFit, WhatCannotBeDoneIsRefused) {
-  const auto refused = [](SimplifyOptions options) {
-    try {
-      simplify(cube_mesh(), options);
-    } catch (const Error& error) {
-      return error.subject();
-    }
-    return std::string("accepted");
+  const auto subject = [](const SimplifyOptions& options) {
+    return refused([&] { simplify(cube_mesh(), options); });
   };
   const Zone zone{.shape = Sphere{{0, 0, 0}, 1.0}, .max_error = 0.05, .min_external_diameter = 0.1};
   SimplifyOptions options = options_with({zone});
   options.method = CoverMethod::kPaper;
-  EXPECT_EQ(refused(options), "zones");
+  EXPECT_EQ(subject(options), "zones");
   options = options_with({zone});
   options.external = ExternalPlacement::kRandom;
-  EXPECT_EQ(refused(options), "zones");
+  EXPECT_EQ(subject(options), "zones");
   options = options_with({zone, zone});
   options.zones[1].max_error = 2.0 * kError;
-  EXPECT_EQ(refused(options), "zone 1");
+  EXPECT_EQ(subject(options), "zone 1");
   options.zones[1] = {.shape = zone.shape, .min_external_diameter = 5.0 * kError};
-  EXPECT_EQ(refused(options), "zone 1");
+  EXPECT_EQ(subject(options), "zone 1");
 }
 
 // --- the right tool ---
@@ -242,18 +231,13 @@ class Walk {
 
 // A thin rod, covered by spheres of one radius nearly along its axis.
 std::vector<Sphere> rod() {
-  SimplifyOptions options;
-  options.max_error = 0.05;
-  options.min_radius = 0.1;
-  options.effort = 2;
-  return simplify(box_mesh({-0.01, -0.01, -0.4}, {0.01, 0.01, 0.4}), options).cover.spheres;
+  const TriangleMesh mesh = box_mesh({-0.01, -0.01, -0.4}, {0.01, 0.01, 0.4});
+  return simplify(mesh, {.max_error = 0.05, .min_radius = 0.1, .effort = 2}).cover.spheres;
 }
 
 ExternalSpheres externals_for(const std::vector<Sphere>& tool, const TriangleMesh& mesh) {
-  ExternalOptions options;
-  options.min_external_diameter = tool_diameter(tool);
-  options.max_error = 0.05;
-  return place_external_spheres(mesh, options);
+  return place_external_spheres(mesh,
+                                {.min_external_diameter = tool_diameter(tool), .max_error = 0.05});
 }
 
 // No point of the closed spheres, those next to the mesh among them, is in S.
@@ -328,4 +312,4 @@ TEST(Tool, ANarrowSlotIsOpenForTheToolThatFits) {
 }
 
 }  // namespace
-}  // namespace spherule::test::zone_fit_test
+}  // namespace spherule::test
