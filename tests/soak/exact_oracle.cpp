@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/exact_oracle.h"
 
+#include "tests/collide/exact_pose.h"
+
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include <algorithm>
@@ -19,7 +21,7 @@
 // the error of a gap, and of the limit that a distance is held against; a clearance adds 16 u of
 // it. (Powers of two scale the quaternions without error; their squares do not underflow.)
 
-namespace spherule {
+namespace spherule::test {
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -30,46 +32,10 @@ template <class Number>
 constexpr Number kClearanceError = 16 * (std::numeric_limits<Number>::epsilon() / 2);
 
 template <class Number>
-using Point = std::array<Number, 3>;
-
-template <class Number>
-class Placement {
- public:
-  explicit Placement(const Pose& pose)
-      : t_{Number(pose.translation().x()), Number(pose.translation().y()),
-           Number(pose.translation().z())} {
-    const Eigen::Quaterniond q = pose.rotation();
-    const Number w = q.w(), x = q.x(), y = q.y(), z = q.z();
-    const Number ww = w * w, xx = x * x, yy = y * y, zz = z * z;
-    n_ = ww + xx + yy + zz;
-    m_[0] = {ww + xx - yy - zz, 2 * (x * y - w * z), 2 * (x * z + w * y)};
-    m_[1] = {2 * (x * y + w * z), ww - xx + yy - zz, 2 * (y * z - w * x)};
-    m_[2] = {2 * (x * z - w * y), 2 * (y * z + w * x), ww - xx - yy + zz};
-  }
-
-  Point<Number> operator()(const Eigen::Vector3d& p) const {
-    const Number x = p.x(), y = p.y(), z = p.z();
-    Point<Number> image;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Number turned = m_[i][0] * x + m_[i][1] * y + m_[i][2] * z;
-      image[i] = turned / n_ + t_[i];
-    }
-    return image;
-  }
-
- private:
-  Point<Number> t_;
-  Number n_;
-  std::array<Point<Number>, 3> m_;
-};
-
-template <class Number>
 Number squared_distance(const Pose& world_from_a, const Eigen::Vector3d& p,
                         const Pose& world_from_b, const Eigen::Vector3d& q) {
-  const Point<Number> a = Placement<Number>(world_from_a)(p);
-  const Point<Number> b = Placement<Number>(world_from_b)(q);
-  const Number x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  return x * x + y * y + z * z;
+  return test::squared_distance(transform(world_from_a, exact<Number>(p)),
+                                transform(world_from_b, exact<Number>(q)));
 }
 
 // |p| + |t| + r, a little larger.
@@ -100,9 +66,9 @@ bool pair_within(const Sphere& p, const Pose& world_from_a, const Sphere& q,
 void ExactOracle::Spheres::place(const PlacedSet& set) {
   const std::size_t count = set.spheres.size();
   for (auto* numbers : {&x, &y, &z, &radius, &error}) numbers->resize(count);
-  const Placement<double> placement(set.world_from_set);
   for (std::size_t i = 0; i < count; ++i) {
-    const Point<double> center = placement(set.spheres[i].center);
+    const Vector<double> center =
+        transform(set.world_from_set, exact<double>(set.spheres[i].center));
     x[i] = center[0];
     y[i] = center[1];
     z[i] = center[2];
@@ -170,4 +136,4 @@ GapBounds ExactOracle::gap(const PlacedSet& a, const PlacedSet& b) {
   return bounds;
 }
 
-}  // namespace spherule
+}  // namespace spherule::test

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace spherule {
+namespace spherule::test {
 
 // Spheres under exactly the motion p -> R(q / |q|) p + t of a pose.
 struct PlacedSet {
@@ -49,4 +49,4 @@ class ExactOracle {
   std::uint64_t rational_pairs_ = 0;
 };
 
-}  // namespace spherule
+}  // namespace spherule::test

@@ -9,17 +9,17 @@
 #include <cstddef>
 #include <limits>
 
-namespace spherule {
+namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
 
-double random_size(SceneRandom& random) {
-  if (random.chance(0.85)) return random.between(0.05, 2.0);
+double random_size(SoakRandom& random) {
+  if (random.chance(0.85)) return random.uniform(0.05, 2.0);
   return random.magnitude(1e-4, 1e4);
 }
 
-double random_radius(SceneRandom& random, double size) {
+double random_radius(SoakRandom& random, double size) {
   switch (random.whole(0, 9)) {
     case 0:
       return 0.0;
@@ -28,7 +28,7 @@ double random_radius(SceneRandom& random, double size) {
     case 2:
       return random.magnitude(1.0, 100.0) * size;
     default:
-      return random.between(0.0, 0.4) * size;
+      return random.uniform(0.0, 0.4) * size;
   }
 }
 
@@ -48,16 +48,15 @@ std::optional<long double> pair_way(const Sphere& standing, const Sphere& mover,
 
 }  // namespace
 
-double SceneRandom::magnitude(double low, double high) {
-  return std::exp(between(std::log(low), std::log(high)));
+double SoakRandom::magnitude(double low, double high) {
+  return std::exp(uniform(std::log(low), std::log(high)));
 }
 
-Vector3d SceneRandom::in_cube(double half_side) {
-  const double x = between(-half_side, half_side), y = between(-half_side, half_side);
-  return {x, y, between(-half_side, half_side)};
+Vector3d SoakRandom::in_cube(double half_side) {
+  return point(half_side);
 }
 
-Vector3d SceneRandom::direction() {
+Vector3d SoakRandom::direction() {
   if (chance(0.1)) return Vector3d::Unit(whole(0, 2)) * (chance(0.5) ? 1.0 : -1.0);
   for (;;) {
     const Vector3d v = in_cube(1.0);
@@ -66,10 +65,10 @@ Vector3d SceneRandom::direction() {
   }
 }
 
-Eigen::Quaterniond SceneRandom::rotation() {
+Eigen::Quaterniond SoakRandom::rotation() {
   if (chance(0.05)) return Eigen::Quaterniond::Identity();
   const Vector3d v = in_cube(1.0);
-  Eigen::Quaterniond q(between(0.05, 1.0), v.x(), v.y(), v.z());
+  Eigen::Quaterniond q(uniform(0.05, 1.0), v.x(), v.y(), v.z());
   if (chance(0.5)) {
     q.coeffs() *= std::ldexp(1.0, whole(-60, 60));
   } else {
@@ -78,7 +77,7 @@ Eigen::Quaterniond SceneRandom::rotation() {
   return q;
 }
 
-double SceneRandom::small_gap() {
+double SoakRandom::small_gap() {
   static constexpr std::array<double, 5> kGaps{0.0, 1e-12, 1e-9, 1e-6, 1e-4};
   const int kind = whole(0, 6);
   const double gap = kind < 5    ? kGaps[static_cast<std::size_t>(kind)]
@@ -87,19 +86,19 @@ double SceneRandom::small_gap() {
   return chance(0.5) ? -gap : gap;
 }
 
-std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size) {
+std::vector<Sphere> random_spheres(SoakRandom& random, int count, double size) {
   enum Family { kScattered, kEqual, kNested, kTouching, kRepeated, kMixed };
   const auto family = static_cast<Family>(random.whole(kScattered, kMixed));
   // Of the frame's origin; now and then the spheres are far from it.
   const Vector3d place =
       random.chance(0.1) ? random.in_cube(random.magnitude(1.0, 1e4) * size) : Vector3d::Zero();
-  const double radius = random.between(0.01, 0.3) * size;
+  const double radius = random.uniform(0.01, 0.3) * size;
   std::vector<Sphere> spheres{{place + random.in_cube(size), radius}};
   while (spheres.size() < static_cast<std::size_t>(count)) {
     const Sphere last = spheres.back();
     switch (family) {
       case kScattered:
-        spheres.push_back({place + random.in_cube(size), random.between(0.0, 0.3) * size});
+        spheres.push_back({place + random.in_cube(size), random.uniform(0.0, 0.3) * size});
         break;
       case kEqual:
         spheres.push_back({place + random.in_cube(size), radius});
@@ -108,10 +107,10 @@ std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size) 
         spheres.push_back({random.chance(0.5)
                                ? last.center
                                : Vector3d(last.center + random.in_cube(0.1 * radius)),
-                           last.radius * random.between(0.8, 1.1)});
+                           last.radius * random.uniform(0.8, 1.1)});
         break;
       case kTouching: {
-        const double next = radius * random.between(0.5, 1.5);
+        const double next = radius * random.uniform(0.5, 1.5);
         spheres.push_back({last.center + (last.radius + next) * random.direction(), next});
         break;
       }
@@ -128,12 +127,12 @@ std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size) 
   return spheres;
 }
 
-SphereTree random_tree(SceneRandom& random, int count, double size) {
+SphereTree random_tree(SoakRandom& random, int count, double size) {
   const int branching = random.chance(0.5) ? 8 : random.whole(2, SphereTree::kMaxBranching);
   return build_tree(random_spheres(random, count, size), {.branching = branching});
 }
 
-int random_count(SceneRandom& random) {
+int random_count(SoakRandom& random) {
   const double kind = random.unit();
   if (kind < 0.90) return random.whole(1, 12);
   return kind < 0.99 ? random.whole(13, 40) : random.whole(100, 400);
@@ -169,24 +168,24 @@ std::optional<double> way_to_gap(std::span<const Sphere> standing, std::span<con
   return way ? static_cast<double>(*way) : farthest;
 }
 
-ScenePair::ScenePair(SceneRandom& random)
+ScenePair::ScenePair(SoakRandom& random)
     : size_(random_size(random)),
       place_(random.in_cube(random.chance(0.1) ? random.magnitude(1e2, 1e7) : 2.0 * size_)),
       a_(random_tree(random, random_count(random), size_)),
       b_(random_tree(random, random_count(random), size_)) {}
 
-PosePair ScenePair::anywhere(SceneRandom& random) const {
+PosePair ScenePair::anywhere(SoakRandom& random) const {
   const Pose world_from_a(random.rotation(), place_ + random.in_cube(size_));
   const Eigen::Quaterniond turn = random.rotation();
   // The middles of the two sets, of which frames may be far away, come close to each other.
   const Vector3d middle_a = world_from_a * a_.sphere(0).center;
   const Vector3d middle_b = Pose(turn, Vector3d::Zero()) * b_.sphere(0).center;
   const double reach = a_.sphere(0).radius + b_.sphere(0).radius;
-  const double way = reach * random.between(0.0, 1.3);
+  const double way = reach * random.uniform(0.0, 1.3);
   return {world_from_a, Pose(turn, middle_a - middle_b + way * random.direction())};
 }
 
-std::optional<PosePair> ScenePair::at_gap(SceneRandom& random, double gap) const {
+std::optional<PosePair> ScenePair::at_gap(SoakRandom& random, double gap) const {
   const Pose world_from_a(random.rotation(), place_ + random.in_cube(size_));
   const Eigen::Quaterniond turn = random.rotation();
   const Vector3d direction = random.direction();
@@ -197,7 +196,7 @@ std::optional<PosePair> ScenePair::at_gap(SceneRandom& random, double gap) const
         random.whole(0, static_cast<int>(tree.spheres().size()) - 1))];
   };
   const Sphere from_a = pick(a_), from_b = pick(b_);
-  const double off = (from_a.radius + from_b.radius + gap) * random.between(0.0, 0.99);
+  const double off = (from_a.radius + from_b.radius + gap) * random.uniform(0.0, 0.99);
   const Vector3d start = world_from_a * from_a.center -
                          Pose(turn, Vector3d::Zero()) * from_b.center + off * random.direction();
 
@@ -209,4 +208,4 @@ std::optional<PosePair> ScenePair::at_gap(SceneRandom& random, double gap) const
   return PosePair{world_from_a, Pose(turn, start + *way * direction), direction};
 }
 
-}  // namespace spherule
+}  // namespace spherule::test

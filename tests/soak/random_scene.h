@@ -5,27 +5,21 @@
 
 #include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
+#include "tests/collide/scene_random.h"
 
 #include <Eigen/Geometry>
 
-#include <cstdint>
 #include <optional>
-#include <random>
 #include <span>
 #include <vector>
 
-namespace spherule {
+namespace spherule::test {
 
-// The same numbers with every standard library.
-class SceneRandom {
+class SoakRandom : public SceneRandom {
  public:
-  explicit SceneRandom(std::uint64_t seed) : engine_(seed) {}
+  using SceneRandom::SceneRandom;
 
-  double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  // in [0, 1)
-  double between(double low, double high) { return low + (high - low) * unit(); }
-  int whole(int low, int high) {
-    return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
-  }
+  double unit() { return uniform(0.0, 1.0); }
   bool chance(double share) { return unit() < share; }
   // As many of each order of magnitude.
   double magnitude(double low, double high);
@@ -36,20 +30,17 @@ class SceneRandom {
 
   // 0, +-1e-12, +-1e-9, +-1e-6, +-1e-4, anything up to 2e-3, or of any order of magnitude.
   double small_gap();
-
- private:
-  std::mt19937_64 engine_;
 };
 
 // Spheres within about `size` of the origin: scattered, equal, nested, touching, repeated, with
 // radii from 0 up to a hundred times the size.
-std::vector<Sphere> random_spheres(SceneRandom& random, int count, double size);
+std::vector<Sphere> random_spheres(SoakRandom& random, int count, double size);
 
 // A tree of any branching over them.
-SphereTree random_tree(SceneRandom& random, int count, double size);
+SphereTree random_tree(SoakRandom& random, int count, double size);
 
 // One to twelve mostly, sometimes some dozens, and rarely some hundreds.
-int random_count(SceneRandom& random);
+int random_count(SoakRandom& random);
 
 // Adds the spheres under a pose, rounded.
 void add_placed(std::span<const Sphere> spheres, const Pose& world_from_set,
@@ -70,17 +61,17 @@ struct PosePair {
 // Two trees and where to put them.
 class ScenePair {
  public:
-  explicit ScenePair(SceneRandom& random);
+  explicit ScenePair(SoakRandom& random);
 
   const SphereTree& a() const { return a_; }
   const SphereTree& b() const { return b_; }
   double size() const { return size_; }
 
   // Overlapping or not, about as often.
-  PosePair anywhere(SceneRandom& random) const;
+  PosePair anywhere(SoakRandom& random) const;
 
   // The least gap is `gap`, but for rounding. Nothing if no way to it was found.
-  std::optional<PosePair> at_gap(SceneRandom& random, double gap) const;
+  std::optional<PosePair> at_gap(SoakRandom& random, double gap) const;
 
  private:
   double size_;
@@ -88,4 +79,4 @@ class ScenePair {
   SphereTree a_, b_;
 };
 
-}  // namespace spherule
+}  // namespace spherule::test

@@ -4,15 +4,36 @@
 #include "collide/collide.h"
 #include "geometry/pose.h"
 
+#include <gtest/gtest.h>
+
+#include <array>
 #include <cstdint>
-#include <deque>
+#include <cstdio>
 #include <span>
 #include <string>
-#include <vector>
 
-namespace spherule {
+namespace spherule::test {
 
-// What one question was answered, and what was true.
+// Exact to the bit: the numbers of a configuration, and "x y z qx qy qz qw" as `spherule collide`
+// takes it.
+inline std::string to_text(std::span<const double> numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    std::array<char, 32> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%s%.17g", text.empty() ? "" : " ", number);
+    text += buffer.data();
+  }
+  return text;
+}
+
+inline std::string to_text(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.rotation();
+  const Eigen::Vector3d t = pose.translation();
+  return to_text(std::array{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+// Counts the answers to one question; each fault fails the test, and the first ones say how to see
+// them again.
 struct Tally {
   std::string question;
   std::uint64_t cases = 0;
@@ -20,40 +41,29 @@ struct Tally {
   std::uint64_t hits = 0;  // answers: collision, free, unknown
   std::uint64_t free = 0;
   std::uint64_t unknown = 0;
-  std::uint64_t missed = 0;     // called free against the truth
-  std::uint64_t crossed = 0;    // a bound against the truth, or a gap beyond the slack
-  std::uint64_t other = 0;      // another answer than it must be
-  std::uint64_t extra = 0;      // called a collision where none was found
-  double worst_slack = 0.0;     // largest gap of those, as a share of what is promised
   std::uint64_t uncertain = 0;  // left open by the oracle itself
+  std::uint64_t faults = 0;
 
-  void count(Verdict verdict, bool is_near);
-  // A collision was reported where the exact gap is `gap`, with `slack` promised. Whether it is
-  // larger than that.
-  bool count_extra(long double gap, double slack);
+  void count(Verdict verdict, bool is_near) {
+    ++cases;
+    near += is_near ? 1 : 0;
+    ++(verdict == Verdict::kCollision ? hits : verdict == Verdict::kFree ? free : unknown);
+  }
+
+  void add_fault(const std::string& what) {
+    constexpr std::uint64_t kShown = 20;
+    if (++faults <= kShown) ADD_FAILURE() << question << ", case " << cases << ": " << what;
+  }
+
+  // Whether there were both answers, and cases near contact, to be judged.
+  void expect_telling(std::uint64_t least_free) const {
+    EXPECT_EQ(faults, 0U) << question;
+    EXPECT_GT(hits, 0U) << question;
+    EXPECT_GE(free, least_free) << question;
+    EXPECT_GT(near, cases / 5) << question;
+    EXPECT_LE(uncertain, cases / 100) << question;
+  }
+  void expect_telling() const { expect_telling(cases / 20 + 1); }
 };
 
-enum class Fault { kMissed, kCrossed, kOther };
-
-// Collects the tallies, and says of the first faults how to see them again.
-class SoakReport {
- public:
-  // Stays where it is.
-  Tally& add(std::string question);
-
-  void add_fault(Tally& tally, Fault fault, const std::string& what);
-
-  const std::deque<Tally>& tallies() const { return tallies_; }
-  const std::vector<std::string>& faults() const { return faults_; }
-
- private:
-  std::deque<Tally> tallies_;
-  std::vector<std::string> faults_;
-};
-
-// Exact to the bit: the numbers of a configuration, and "x y z qx qy qz qw" as `spherule collide`
-// takes it.
-std::string to_text(std::span<const double> numbers);
-std::string to_text(const Pose& pose);
-
-}  // namespace spherule
+}  // namespace spherule::test

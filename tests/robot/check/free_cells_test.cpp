@@ -3,6 +3,7 @@
 
 #include "collide/kernels/plan_trees.h"
 #include "tests/collide/trees.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <Eigen/Geometry>
@@ -111,11 +112,11 @@ std::vector<double> random_positions(SceneRandom& random, const FreeCellsSource&
 }
 
 TEST(FreeCells, HoldNoPositionsAtWhichSpheresAreNear) {
-  SceneRandom random(77);
+  SceneRandom random(seeded(77));
   int checked = 0;
   int far = 0;
   int far_and_free = 0;
-  for (int round = 0; round < effort(300, 60); ++round) {
+  for (int round = 0; round < scaled(300, 60); ++round) {
     const FreeCellsSource source = random_source(random);
     const std::shared_ptr<const FreeCells> cells = FreeCells::of(source);
     if (cells == nullptr) continue;
@@ -136,7 +137,7 @@ TEST(FreeCells, HoldNoPositionsAtWhichSpheresAreNear) {
 }
 
 TEST(FreeCells, AreNoneWhereNothingIsFreeOrNothingOrTooMuchMoves) {
-  SceneRandom random(5);
+  SceneRandom random(seeded(5));
   FreeCellsSource source = random_source(random);
   source.first.chain = {random_joint(random, 0)};
   source.second.chain = {random_joint(random, 1), random_joint(random, 2)};
@@ -152,7 +153,7 @@ TEST(FreeCells, AreNoneWhereNothingIsFreeOrNothingOrTooMuchMoves) {
 }
 
 TEST(FreeCells, AreKeptForTheSameTreesAndJoints) {
-  SceneRandom random(6);
+  SceneRandom random(seeded(6));
   internal::FreeCellsCache cache;
   FreeCellsSource source;
   source.first.trees = trees_of({{Eigen::Vector3d::Zero(), 0.1}});

@@ -10,6 +10,7 @@
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
@@ -41,9 +42,9 @@ struct Counts {
 };
 
 TEST(RobotCheckerEdge, WhatIsProvedFreeIsFree) {
-  SceneRandom random(81);
+  SceneRandom random(seeded(81));
   Counts counts;
-  for (int n = 0; n < effort(60, 12); ++n) {
+  for (int n = 0; n < scaled(60, 12); ++n) {
     const auto [scene, oracle] = random_scene(random);
     const RobotChecker checker = scene.snapshot();
     RobotChecker::Scratch scratch(checker);
@@ -78,7 +79,7 @@ std::shared_ptr<const SphereTree> wall() {
 
 // The wall is on a link that moves, and a drill on another one: nothing stands still.
 TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
-  SceneRandom random(82);
+  SceneRandom random(seeded(82));
   RobotModel robot("base");
   robot.add_link("door", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -99, .upper = 99});
@@ -89,7 +90,7 @@ TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
   robot.attach("drill", one_sphere_tree({0.0, 0.1, 0.05}, 1e-3));
   const RobotChecker checker = RobotScene(robot).snapshot();
   RobotChecker::Scratch scratch(checker);
-  for (int i = 0; i < effort(200, 20); ++i) {
+  for (int i = 0; i < scaled(200, 20); ++i) {
     const double side = random.whole(0, 1) == 0 ? 1.0 : -1.0;
     const Configuration from = {random.uniform(-30.0, 30.0), 0.0, random.uniform(-9.0, 9.0)};
     Configuration to = {random.uniform(-30.0, 30.0), 0.0, random.uniform(-9.0, 9.0)};
@@ -106,8 +107,8 @@ TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
 
 // A blade that turns by many turns through a thin plate, which hangs on the other side of the root.
 TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
-  SceneRandom random(83);
-  for (int i = 0; i < effort(150, 30); ++i) {
+  SceneRandom random(seeded(83));
+  for (int i = 0; i < scaled(150, 30); ++i) {
     const double angle = random.uniform(-3.0, 3.0);
     const double size = std::pow(10.0, random.uniform(-5.0, -2.0));
     const double radius = random.uniform(0.2, 5.0);
@@ -297,7 +298,7 @@ TEST(RobotCheckerEdge, StopsAtSolidsOfEveryKind) {
 }
 
 TEST(RobotCheckerEdge, ManyAnswerAsOne) {
-  SceneRandom random(84);
+  SceneRandom random(seeded(84));
   const auto [scene, oracle] = random_scene(random);
   const RobotChecker checker = scene.snapshot();
   std::vector<RobotChecker::Scratch> scratches;

@@ -9,6 +9,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -24,11 +25,11 @@ namespace {
 constexpr long double kSlack = 1e-12L;
 
 TEST(RobotChecker, AnswersAsAllPairsOfSpheresDo) {
-  SceneRandom random(71);
+  SceneRandom random(seeded(71));
   int hits = 0;
   int free = 0;
   int self_hits = 0;
-  for (int n = 0; n < effort(150, 30); ++n) {
+  for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
     const RobotChecker checker = scene.snapshot();
     RobotChecker::Scratch scratch(checker);
@@ -57,10 +58,10 @@ TEST(RobotChecker, AnswersAsAllPairsOfSpheresDo) {
 
 // The padding is such that the nearest pair just touches, or just not.
 TEST(RobotChecker, PaddingIsGrownSpheresToTheLastDigits) {
-  SceneRandom random(72);
+  SceneRandom random(seeded(72));
   int touching = 0;
   int apart = 0;
-  for (int n = 0; n < effort(200, 40); ++n) {
+  for (int n = 0; n < scaled(200, 40); ++n) {
     auto [scene, oracle] = random_scene(random);
     const std::vector<double> q = random_configuration(random, oracle.robot, 3.0);
     std::size_t nearest = 0;
@@ -93,9 +94,9 @@ TEST(RobotChecker, PaddingIsGrownSpheresToTheLastDigits) {
 }
 
 TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
-  SceneRandom random(73);
+  SceneRandom random(seeded(73));
   int above_zero = 0;
-  for (int n = 0; n < effort(150, 30); ++n) {
+  for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
     const RobotChecker checker = scene.snapshot();
     RobotChecker::Scratch scratch(checker);
@@ -131,9 +132,9 @@ TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
 }
 
 TEST(RobotChecker, ExplainsEveryPairThatTouches) {
-  SceneRandom random(74);
+  SceneRandom random(seeded(74));
   int contacts = 0;
-  for (int n = 0; n < effort(150, 30); ++n) {
+  for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
     const RobotChecker checker = scene.snapshot();
     RobotChecker::Scratch scratch(checker);
@@ -186,9 +187,9 @@ TEST(RobotChecker, ExplainsEveryPairThatTouches) {
 
 // An attached object is tested as the same tree on a link of its own that stands in its link.
 TEST(RobotChecker, AttachedObjectsAreLinks) {
-  SceneRandom random(75);
+  SceneRandom random(seeded(75));
   int hits = 0;
-  for (int n = 0; n < effort(150, 20); ++n) {
+  for (int n = 0; n < scaled(150, 20); ++n) {
     RobotModel robot = random_robot(random, 4, false);
     for (const auto& link : {"link_0", "link_1", "link_2", "link_3", "link_4"}) {
       robot.attach(link, std::make_shared<const SphereTree>(
@@ -248,8 +249,8 @@ TEST(RobotChecker, AttachedObjectsAreLinks) {
 }
 
 TEST(RobotChecker, ManyAndThreadsAnswerAsOne) {
-  SceneRandom random(76);
-  for (int n = 0; n < effort(20, 4); ++n) {
+  SceneRandom random(seeded(76));
+  for (int n = 0; n < scaled(20, 4); ++n) {
     const auto [scene, oracle] = random_scene(random);
     for (const bool enforce : {false, true}) {
       const RobotChecker checker = scene.snapshot({.enforce_limits = enforce});

@@ -11,6 +11,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/solid_oracle.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -160,9 +161,9 @@ class ConfirmedScene {
 constexpr double kUnclear = 1e-3;
 
 TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
-  SceneRandom random(171);
+  SceneRandom random(seeded(171));
   int hits = 0, free = 0, alarms = 0;
-  for (int i = 0; i < effort(60, 6); ++i) {
+  for (int i = 0; i < scaled(60, 6); ++i) {
     const ConfirmedScene scene(random);
     std::vector<double> queried;
     std::vector<std::uint8_t> expected;
@@ -200,9 +201,9 @@ TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
 
 TEST(RobotConfirmed, MotionsAreProvedOnTheMeshes) {
   const std::vector<InstructionSet> sets = instruction_sets();
-  SceneRandom random(172);
+  SceneRandom random(seeded(172));
   int free = 0, hits = 0, unknown = 0, alarms = 0;
-  for (int i = 0; i < effort(60, 8); ++i) {
+  for (int i = 0; i < scaled(60, 8); ++i) {
     const ConfirmedScene scene(random);
     const RobotChecker checker = scene.checker(sets[random.bits() % sets.size()]);
     const RobotChecker spheres = scene.checker(best_instruction_set(), false);

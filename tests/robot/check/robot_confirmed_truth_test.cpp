@@ -10,6 +10,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/voxel_solids.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -177,9 +178,9 @@ class VoxelScene {
 constexpr double kUnclear = 1e-6;
 
 TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
-  SceneRandom random(271);
+  SceneRandom random(seeded(271));
   int counts[2] = {}, alarms = 0;
-  for (int i = 0; i < effort(60, 12); ++i) {
+  for (int i = 0; i < scaled(60, 12); ++i) {
     const VoxelScene scene(random, random.whole(3, 6));
     const RobotChecker checker = scene.checker(best_instruction_set(), true);
     const RobotChecker spheres = scene.checker(best_instruction_set(), false);
@@ -208,9 +209,9 @@ TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
 }
 
 TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
-  SceneRandom random(272);
+  SceneRandom random(seeded(272));
   int free = 0, hits = 0, unknown = 0, alarms = 0;
-  for (int i = 0; i < effort(60, 12); ++i) {
+  for (int i = 0; i < scaled(60, 12); ++i) {
     const VoxelScene scene(random, random.whole(3, 6));
     const RobotChecker checker = scene.checker(best_instruction_set(), true);
     const RobotChecker spheres = scene.checker(best_instruction_set(), false);
@@ -251,7 +252,7 @@ TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
 
 // No surfaces touch, in configurations and all along a motion.
 TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
-  SceneRandom random(274);
+  SceneRandom random(seeded(274));
   const VoxelSolid small(random, 4, 0.05), large(random, 1, 2.0);
   const std::vector<ObstacleShape> inside = {cover_of(small.covered()),
                                              std::make_shared<const SolidMesh>(small.mesh()),
@@ -285,7 +286,7 @@ TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
 
 // Clearance and padding together may be more than a query of two meshes takes.
 TEST(RobotConfirmedTruth, TheLargestClearanceIsAccepted) {
-  SceneRandom random(273);
+  SceneRandom random(seeded(273));
   const VoxelSolid body(random, 4, 0.1);
   RobotModel robot("base");
   robot.add_link("link", "base", {.name = "joint", .type = JointType::kContinuous});

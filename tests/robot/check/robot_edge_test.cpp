@@ -10,6 +10,7 @@
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
@@ -32,48 +33,15 @@ void expect_true(const ObstacleChecker& checker, const std::vector<double>& from
   expect_so(hits, from, to, result, steps);
 }
 
-TEST(RobotEdge, WhatIsProvedFreeIsFree) {
-  SceneRandom random(51);
-  int free = 0;
-  int hits = 0;
-  int unknown = 0;
-  const std::vector<InstructionSet> sets = instruction_sets();
-  for (int i = 0; i < effort(1200, 200); ++i) {
-    const RobotModel robot = random_robot_with_trees(random, 0.2);
-    const std::vector<PlacedTree> obstacles = random_obstacles(random);
-    ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
-    const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
-    const std::vector<double> from = random_configuration(random, robot, 3.0);
-    std::vector<double> to = random_configuration(random, robot, size);
-    for (std::size_t k = 0; k < to.size(); ++k) to[k] += from[k];
-    for (const InstructionSet set : sets) {
-      options.instructions = set;
-      const ObstacleChecker checker(robot, obstacles, options);
-      RobotChecker::Scratch scratch(checker);
-      const EdgeRequest request{.resolution = 1e-3, .first = i % 3 == 0};
-      const EdgeResult result = checker.check_edge(from, to, scratch, request);
-      expect_true(checker, from, to, result, effort(1000, 200));
-      if (HasFatalFailure()) return;
-      (result.verdict == Verdict::kFree        ? free
-       : result.verdict == Verdict::kCollision ? hits
-                                               : unknown) += 1;
-    }
-  }
-  const int count = static_cast<int>(sets.size());
-  EXPECT_GT(free, count * effort(100, 5));
-  EXPECT_GT(hits, count * effort(50, 3));
-  EXPECT_LT(unknown, (free + hits) / 20);
-}
-
 // Motions that follow each other in steps of any size, beside what was found near: what the scratch
 // remembers proves many of them, and none that is not free.
 TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
-  SceneRandom random(55);
+  SceneRandom random(seeded(55));
   int free = 0;
   int remembered = 0;
   int hits = 0;
   int unknown = 0;
-  for (int i = 0; i < effort(300, 20); ++i) {
+  for (int i = 0; i < scaled(300, 20); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.2);
     if (robot.variable_count() == 0) continue;
     std::vector<double> at = random_configuration(random, robot, 3.0);
@@ -123,9 +91,9 @@ RobotModel long_arm() {
 }
 
 TEST(RobotEdge, NothingIsPassedThrough) {
-  SceneRandom random(52);
+  SceneRandom random(seeded(52));
   const RobotModel robot = long_arm();
-  for (int i = 0; i < effort(500, 50); ++i) {
+  for (int i = 0; i < scaled(500, 50); ++i) {
     const double angle = random.uniform(-40.0, 40.0);
     const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
     // Just in the way, or just beside it.
@@ -154,14 +122,14 @@ TEST(RobotEdge, NothingIsPassedThrough) {
 
 // A shift and a turn of bodies on bodies, at a wall of spheres with no gap.
 TEST(RobotEdge, AWallIsNotPassed) {
-  SceneRandom random(53);
+  SceneRandom random(seeded(53));
   std::vector<Sphere> wall;
   for (int i = -20; i <= 20; ++i) {
     for (int k = -20; k <= 20; ++k) wall.push_back({{1.0, 0.02 * i, 0.02 * k}, 0.015});
   }
   const std::vector<PlacedTree> obstacles = {
       {std::make_shared<const SphereTree>(build_tree(wall)), Pose()}};
-  for (int i = 0; i < effort(200, 20); ++i) {
+  for (int i = 0; i < scaled(200, 20); ++i) {
     RobotModel robot("base");
     robot.add_link("slide", "base",
                    {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});

@@ -9,6 +9,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -169,9 +170,9 @@ void expect_explained(const Scene& scene, const ObstacleChecker& checker,
 // Robots with links that stand and links with several trees; some pairs are not tested; some
 // positions are far out of the usual range.
 TEST(RobotExplain, TellsWhatTouchesWhat) {
-  SceneRandom random(81);
+  SceneRandom random(seeded(81));
   Count count;
-  for (int i = 0; i < effort(600, 40); ++i) {
+  for (int i = 0; i < scaled(600, 40); ++i) {
     Scene scene{.robot = random_robot_with_trees(random, 0.3)};
     for (int k = 0; k < 2; ++k) {
       for (const PlacedTree& other : random_obstacles(random)) scene.obstacles.push_back(other);
@@ -200,9 +201,9 @@ TEST(RobotExplain, TellsWhatTouchesWhat) {
 
 // A sphere of the robot is met by one at a distance that rounding can just tell from contact.
 TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
-  SceneRandom random(82);
+  SceneRandom random(seeded(82));
   Count count;
-  for (int i = 0; i < effort(800, 100); ++i) {
+  for (int i = 0; i < scaled(800, 100); ++i) {
     Scene scene{.robot = random_robot_with_trees(random, 0.3)};
     if (i % 2 == 1) scene.options.world_from_root = random_root(random, 1000.0);
     const std::vector<double> at =
@@ -227,9 +228,9 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
 // Along a path, so that the scratch remembers contacts and clearances; a link has a tree without a
 // mesh beside one with, and an obstacle has none.
 TEST(RobotExplain, TellsWhatMeshesTouch) {
-  SceneRandom random(83);
+  SceneRandom random(seeded(83));
   Count count;
-  for (int i = 0; i < effort(120, 10); ++i) {
+  for (int i = 0; i < scaled(120, 10); ++i) {
     Scene scene{.robot = random_robot(random, random.whole(1, 6), i % 2 == 1)};
     scene.options.world_from_root = random_root(random, 1.0);
     const auto covered = [&](double size) {

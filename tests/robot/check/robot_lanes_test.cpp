@@ -8,6 +8,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -102,9 +103,9 @@ void expect_same_answers(Checkers& checkers, const std::vector<std::vector<doubl
 }
 
 TEST(RobotLanes, VerdictsAreThoseOfTheCanonicalTestsToTheLastDigit) {
-  SceneRandom random(911);
+  SceneRandom random(seeded(911));
   int close = 0;
-  for (int n = 0; n < effort(120, 12); ++n) {
+  for (int n = 0; n < scaled(120, 12); ++n) {
     const auto [scene, oracle] = scene_with_solids(random);
     Checkers checkers(scene);
     std::vector<std::vector<double>> tested;
@@ -132,10 +133,10 @@ TEST(RobotLanes, VerdictsAreThoseOfTheCanonicalTestsToTheLastDigit) {
 // What is called free has no contact at many configurations, on any instruction set; where a
 // contact is reported there is one; and no two instruction sets contradict each other.
 TEST(RobotLanes, MotionsAreProvedOnEveryInstructionSet) {
-  SceneRandom random(912);
+  SceneRandom random(seeded(912));
   int free = 0;
   int hits = 0;
-  for (int n = 0; n < effort(100, 10); ++n) {
+  for (int n = 0; n < scaled(100, 10); ++n) {
     const auto [scene, oracle] = scene_with_solids(random);
     Checkers checkers(scene);
     for (int i = 0; i < 4; ++i) {
@@ -238,7 +239,7 @@ TEST(RobotLanes, RigidPairsAtRoundingsDistance) {
   allowed.forbid("arm", "tip");
   scene.set_allowed_collisions(allowed);
   Checkers checkers(scene);
-  SceneRandom random(913);
+  SceneRandom random(seeded(913));
   std::vector<std::vector<double>> tested;
   for (int i = 0; i < 50; ++i) tested.push_back({random.uniform(-3.0, 3.0)});
   expect_same_answers(checkers, tested);

@@ -8,6 +8,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -42,11 +43,11 @@ void expect_verdicts_on_every_set(const RobotModel& robot, const std::vector<Pla
 }
 
 TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
-  SceneRandom random(61);
+  SceneRandom random(seeded(61));
   int hits = 0;
   int removed = 0;
   int free = 0;
-  for (int i = 0; i < effort(60, 8); ++i) {
+  for (int i = 0; i < scaled(60, 8); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
     ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
     std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
@@ -114,11 +115,11 @@ bool is_untested(const ObstacleOptions& options, std::size_t link, std::size_t o
 // One side of every pair is a mesh, the other one spheres: those of the obstacles, but for every
 // fifth robot.
 TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
-  SceneRandom random(71);
+  SceneRandom random(seeded(71));
   int hits = 0;
   int removed = 0;
   int free = 0;
-  for (int i = 0; i < effort(100, 20); ++i) {
+  for (int i = 0; i < scaled(100, 20); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
     ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
     std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
@@ -208,11 +209,11 @@ void query_in_between(SceneRandom& random, const ObstacleChecker& checker,
 // Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
 // neither of those before, nor of a block or a motion that was requested in between.
 TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
-  SceneRandom random(63);
+  SceneRandom random(seeded(63));
   int hits = 0;
   int free = 0;
   int changes = 0;
-  for (int i = 0; i < effort(60, 10); ++i) {
+  for (int i = 0; i < scaled(60, 10); ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
     ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
     std::vector<std::shared_ptr<const CoveredMesh>> meshes;
@@ -270,7 +271,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
 
 // A small body inside a large one touches none of its triangles.
 TEST(RobotMesh, WhatLiesInsideCollides) {
-  SceneRandom random(62);
+  SceneRandom random(seeded(62));
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   const auto inner = covered_tetrahedron(random, 0.02);
@@ -288,7 +289,7 @@ TEST(RobotMesh, WhatLiesInsideCollides) {
 
 // So does a sphere inside a mesh, whichever of the two moves.
 TEST(RobotMesh, ASphereInsideCollides) {
-  SceneRandom random(64);
+  SceneRandom random(seeded(64));
   const auto outer = covered_tetrahedron(random, 2.0);
   const std::vector<double> path = {0.0, 0.5, 1.0};
   for (const bool mesh_moves : {true, false}) {

@@ -10,6 +10,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/check/edge_oracle.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -161,10 +162,10 @@ class ProvedRobot : public testing::Test {
 };
 
 TEST_F(ProvedRobot, ConfigurationsAreFreeByProofsOrSpheres) {
-  SceneRandom random(5101);
+  SceneRandom random(seeded(5101));
   int free = 0;
   int freed = 0;
-  for (int n = 0; n < effort(60, 10); ++n) {
+  for (int n = 0; n < scaled(60, 10); ++n) {
     make(random);
     std::vector<double> all;
     std::vector<std::uint8_t> truth;
@@ -192,11 +193,11 @@ TEST_F(ProvedRobot, ConfigurationsAreFreeByProofsOrSpheres) {
 }
 
 TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
-  SceneRandom random(5102);
+  SceneRandom random(seeded(5102));
   int free = 0;
   int freed = 0;
   int unknown = 0;
-  for (int n = 0; n < effort(60, 10); ++n) {
+  for (int n = 0; n < scaled(60, 10); ++n) {
     make(random);
     for (int i = 0; i < 20; ++i) {
       const Configuration from = random_in_ranges(random);

@@ -7,6 +7,7 @@
 #include "robot/check/robot_scene.h"
 #include "tests/collide/trees.h"
 #include "tests/robot/check/edge_oracle.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -107,11 +108,11 @@ RobotChecker random_arm(SceneRandom& random) {
 }
 
 TEST(RobotShortestEdge, WhatIsProvedFreeIsFree) {
-  SceneRandom random(91);
+  SceneRandom random(seeded(91));
   int free = 0;
   int hits = 0;
   int other_way = 0;
-  for (int n = 0; n < effort(300, 40); ++n) {
+  for (int n = 0; n < scaled(300, 40); ++n) {
     const RobotChecker checker = random_arm(random);
     RobotChecker::Scratch scratch(checker);
     for (int i = 0; i < 4; ++i) {

@@ -9,6 +9,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
 
@@ -98,9 +99,9 @@ std::optional<std::array<std::vector<double>, 2>> at_contact(
 }
 
 TEST(RobotSolidLanes, VerdictsAreThoseOfTheCanonicalTests) {
-  SceneRandom random(921);
+  SceneRandom random(seeded(921));
   int close = 0;
-  for (int n = 0; n < effort(50, 8); ++n) {
+  for (int n = 0; n < scaled(50, 8); ++n) {
     const auto [scene, oracle] = scene_with_meshes(random);
     CheckerOfSet first(scene, InstructionSet::kPortable);
     std::vector<std::vector<double>> tested;
@@ -129,10 +130,10 @@ TEST(RobotSolidLanes, VerdictsAreThoseOfTheCanonicalTests) {
 }
 
 TEST(RobotSolidLanes, MotionsAreFreeWhereTheCanonicalTestsAre) {
-  SceneRandom random(922);
+  SceneRandom random(seeded(922));
   int free = 0;
   int hits = 0;
-  for (int n = 0; n < effort(20, 6); ++n) {
+  for (int n = 0; n < scaled(20, 6); ++n) {
     const auto [scene, oracle] = scene_with_meshes(random);
     const SceneRandom motions(random.bits());  // the same on every instruction set
     for (const InstructionSet set : instruction_sets()) {
@@ -183,16 +184,47 @@ TEST(RobotSolidLanes, AMotionInsideIsNotFree) {
   }
 }
 
+// A body on a line through the middle of a sphere of fine triangles, far smaller than the growth.
+TEST(RobotSolidGrowth, TouchesWithinTheGrowth) {
+  RobotModel robot("base");
+  robot.add_link("slide", "base",
+                 {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -9, .upper = 9});
+  robot.attach("slide", one_sphere_tree({0, 0, 0}, 1e-3));
+  TriangleMesh mesh = icosphere(4);
+  mesh.vertex_error = 0.5;
+  for (const double offset : {0.0, 7.0}) {
+    RobotScene scene(robot);
+    scene.add("solid", std::make_shared<const SolidMesh>(mesh),
+              Pose::from_translation({offset, 0, 0}));
+    for (const InstructionSet set : instruction_sets()) {
+      const RobotChecker checker = scene.snapshot({.instructions = set});
+      RobotChecker::Scratch scratch(checker);
+      for (const double at : {1.2, 1.3, 1.4, 1.45}) {
+        const std::vector<double> from = {offset - at};
+        const std::vector<double> to = {offset - at - 0.01};
+        EXPECT_FALSE(checker.check_config(from, scratch)) << at;
+        EXPECT_NE(checker.check_edge(from, to, scratch).verdict, Verdict::kFree) << at;
+        const std::vector<double> many(16, offset - at);
+        std::vector<std::uint8_t> free(16, 2);
+        checker.check_configs(many, scratch, free);
+        EXPECT_EQ(free, std::vector<std::uint8_t>(16, 0)) << at;
+      }
+      const std::vector<double> away = {offset - 1.6};
+      EXPECT_TRUE(checker.check_config(away, scratch));
+    }
+  }
+}
+
 // Points that the canonical test finds in the solid, as near to it as it goes, are in the cover.
 TEST(SolidSpheres, HoldWhatTheCanonicalTestFindsInside) {
-  SceneRandom random(923);
+  SceneRandom random(seeded(923));
   int inside = 0;
   for (int n = 0; n < 2 * kKinds; ++n) {
     TriangleMesh mesh = mesh_of_kind(n % kKinds);
     mesh.vertex_error = n < kKinds ? 0.0 : 0.02;
     const SolidMesh solid(mesh);
     const std::vector<Sphere> cover = internal::spheres_around(solid);
-    for (int i = 0; i < effort(300, 30); ++i) {
+    for (int i = 0; i < scaled(300, 30); ++i) {
       const Eigen::Vector3d p = random.point(1.2);
       if (!collides(*one_sphere_tree(p, 0.0), Pose(), solid, Pose())) continue;
       ++inside;

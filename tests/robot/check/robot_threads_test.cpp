@@ -6,6 +6,7 @@
 #include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
@@ -48,10 +49,10 @@ std::vector<double> random_path(SceneRandom& random, const RobotModel& robot, st
 }
 
 TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
-  SceneRandom random(71);
+  SceneRandom random(seeded(71));
   std::size_t hits = 0;
   std::size_t free = 0;
-  for (int i = 0; i < effort(40, 6); ++i) {
+  for (int i = 0; i < scaled(40, 6); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const auto variables = static_cast<std::size_t>(robot.variable_count());
     if (variables == 0) continue;

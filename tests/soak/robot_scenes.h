@@ -2,6 +2,7 @@
 #pragma once
 
 #include "robot/check/robot_scene.h"
+#include "tests/soak/exact_oracle.h"
 #include "tests/soak/random_scene.h"
 
 #include <memory>
@@ -11,13 +12,53 @@
 #include <utility>
 #include <vector>
 
-namespace spherule {
+namespace spherule::test {
+
+struct PlacedTree {
+  std::shared_ptr<const SphereTree> tree;
+  Pose world_from_tree;
+};
+
+// A random robot among obstacles. Its first joint shifts all of it, so that it can be brought to
+// any gap.
+class TreeScene {
+ public:
+  explicit TreeScene(SoakRandom& random);
+
+  const RobotModel& robot() const { return robot_; }
+  // Its links are tested against the obstacles alone.
+  RobotScene scene() const;
+
+  std::vector<double> anywhere(SoakRandom& random) const;
+  // Sets the first joint so that the least gap is `gap`, but for rounding; false if the robot
+  // passes the obstacles at these positions of the others.
+  bool bring_to_gap(std::vector<double>& configuration, double gap);
+
+  // Whether a link touches an obstacle, in exact arithmetic, under the poses of
+  // forward_kinematics(), for which the answers are promised.
+  bool touches(std::span<const double> configuration);
+  // The least gap there, and (for collisions) the largest slack of a pair.
+  GapBounds gap(std::span<const double> configuration);
+  double slack(std::span<const double> configuration);
+
+ private:
+  // Calls use(tree, pose, obstacle) for every pair, until it returns true.
+  template <class Use>
+  bool any_pair(std::span<const double> configuration, Use use);
+
+  std::vector<PlacedTree> obstacles_;
+  Eigen::Vector3d direction_;  // of the first joint
+  RobotModel robot_;
+  std::vector<Sphere> static_, movers_;
+  std::vector<Pose> world_from_link_;
+  ExactOracle oracle_;
+};
 
 // A random RobotScene, and all that it says is tested, pair by pair, with the public queries for
 // two shapes alone.
 class CheckerScene {
  public:
-  explicit CheckerScene(SceneRandom& random);
+  explicit CheckerScene(SoakRandom& random);
 
   const RobotScene& scene() const { return scene_; }
   const RobotModel& robot() const { return scene_.robot(); }
@@ -25,7 +66,7 @@ class CheckerScene {
   std::size_t pair_count() const { return pairs_.size(); }
 
   // Positions that keep every joint, those that mimic others, too, within 100.
-  std::vector<double> anywhere(SceneRandom& random) const;
+  std::vector<double> anywhere(SoakRandom& random) const;
   bool in_filter_range(std::span<const double> configuration) const;
 
   // Whether a pair touches, by the canonical tests under the poses of forward_kinematics().
@@ -39,7 +80,7 @@ class CheckerScene {
     std::vector<double> free;
     std::vector<double> contact;
   };
-  std::optional<Border> find_border(SceneRandom& random);
+  std::optional<Border> find_border(SoakRandom& random);
 
  private:
   using Tree = std::shared_ptr<const SphereTree>;
@@ -65,11 +106,11 @@ class CheckerScene {
     std::size_t obstacle;
   };
 
-  RobotModel make_robot(SceneRandom& random);
-  void make_bodies(SceneRandom& random);
-  void make_obstacles(SceneRandom& random);
-  void make_pairs(SceneRandom& random);
-  ObstacleShape make_shape(SceneRandom& random) const;
+  RobotModel make_robot(SoakRandom& random);
+  void make_bodies(SoakRandom& random);
+  void make_obstacles(SoakRandom& random);
+  void make_pairs(SoakRandom& random);
+  ObstacleShape make_shape(SoakRandom& random) const;
   std::vector<Tree> inflated(const Body& body, double padding, bool without_region) const;
   bool is_moved(int first, int second) const;
 
@@ -84,4 +125,4 @@ class CheckerScene {
   std::vector<Pose> world_from_link_;
 };
 
-}  // namespace spherule
+}  // namespace spherule::test

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/soak/thread_cases.h"
-
 #include "base/error.h"
 #include "base/files.h"
 #include "collide/collide.h"
@@ -8,35 +6,24 @@
 #include "robot/check/robot_scene.h"
 #include "simplifier/simplify.h"
 #include "tests/soak/random_scene.h"
-#include "tests/soak/soak_robot.h"
-#include "tests/support/shapes.h"
+#include "tests/soak/robot_scenes.h"
+#include "tests/soak/scale.h"
+#include "tests/support/temp_dir.h"
 
-#include <atomic>
+#include <gtest/gtest.h>
+// What threads may do at the same time, as the headers promise: each answer is that of one thread
+// alone. Built for the thread sanitizer, each of its reports fails the test, too.
 #include <cstddef>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
+namespace spherule::test {
 namespace {
-
-std::atomic<std::uint64_t> sanitizer_reports = 0;
-
-}  // namespace
-
-// The thread sanitizer calls this for each of its reports.
-extern "C" void __tsan_on_report(void*);
-extern "C" void __tsan_on_report(void*) {
-  ++sanitizer_reports;
-}
-
-namespace spherule {
-namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t kThreads = 4;
 
@@ -45,33 +32,13 @@ void run_at_once(std::size_t threads, const std::function<void(std::size_t)>& wo
   for (std::size_t i = 0; i < threads; ++i) all.emplace_back([&work, i] { work(i); });
 }
 
-// Counts reports of the sanitizer while it lives, and answers that differ.
-class ThreadRecord {
- public:
-  void expect(bool is_right, const std::string& what) {
-    ++record_.answers;
-    if (!is_right) record_.add_fault(what);
-  }
-  void finish_case() { ++record_.cases; }
-  SoakRecord record() {
-    for (std::uint64_t i = before_; i < sanitizer_reports; ++i) {
-      record_.add_fault("a report of the thread sanitizer, on standard error");
-    }
-    return record_;
-  }
-
- private:
-  SoakRecord record_;
-  std::uint64_t before_ = sanitizer_reports;
-};
-
 struct CheckedPath {
   std::vector<double> configurations, from, to;
   std::size_t count = 0;
 };
 
 // More than are shared out among threads.
-CheckedPath random_path(const SoakRobot& robot, SceneRandom& random) {
+CheckedPath random_path(const TreeScene& robot, SoakRandom& random) {
   CheckedPath path;
   for (path.count = 0; path.count < 4200; ++path.count) {
     const std::vector<double> at = robot.anywhere(random);
@@ -80,7 +47,7 @@ CheckedPath random_path(const SoakRobot& robot, SceneRandom& random) {
   const auto edges = static_cast<std::ptrdiff_t>(path.configurations.size() / path.count * 40);
   path.from.assign(path.configurations.begin(), path.configurations.begin() + edges);
   path.to = path.from;
-  for (double& position : path.to) position += random.between(-0.1, 0.1);
+  for (double& position : path.to) position += random.uniform(-0.1, 0.1);
   return path;
 }
 
@@ -122,12 +89,9 @@ void fit_and_stop(const TriangleMesh& mesh) {
   }
 }
 
-}  // namespace
-
-SoakRecord check_shared_trees(std::uint64_t scenes, std::uint64_t seed) {
-  ThreadRecord record;
-  SceneRandom random(seed);
-  for (std::uint64_t scene = 0; scene < scenes; ++scene) {
+TEST(Threads, AskTreesAtOnce) {
+  SoakRandom random(seeded(7));
+  for (int scene = 0; scene < scaled(2); ++scene) {
     const ScenePair pair(random);
     std::vector<PosePair> poses;
     for (int i = 0; i < 200; ++i) {
@@ -148,17 +112,14 @@ SoakRecord check_shared_trees(std::uint64_t scenes, std::uint64_t seed) {
     const std::vector<double> expected = query();
     std::vector<std::vector<double>> said(kThreads);
     run_at_once(kThreads, [&](std::size_t i) { said[i] = query(); });
-    for (const auto& of_thread : said) record.expect(of_thread == expected, "another answer");
-    record.finish_case();
+    for (const auto& of_thread : said) EXPECT_TRUE(of_thread == expected);
   }
-  return record.record();
 }
 
-SoakRecord check_shared_checkers(std::uint64_t scenes, std::uint64_t seed) {
-  ThreadRecord record;
-  SceneRandom random(seed);
-  for (std::uint64_t number = 0; number < scenes; ++number) {
-    const SoakRobot robot(random);
+TEST(Threads, AskACheckerWhileItsSceneIsEdited) {
+  SoakRandom random(seeded(7));
+  for (int number = 0; number < scaled(1); ++number) {
+    const TreeScene robot(random);
     RobotScene scene = robot.scene();
     const RobotChecker checker = scene.snapshot();
     const CheckedPath path = random_path(robot, random);
@@ -179,18 +140,15 @@ SoakRecord check_shared_checkers(std::uint64_t scenes, std::uint64_t seed) {
       }
     });
     for (const CheckedAnswers& of_thread : said) {
-      record.expect(of_thread == expected, "another answer");
+      EXPECT_TRUE(of_thread == expected);
     }
-    record.finish_case();
   }
-  return record.record();
 }
 
-SoakRecord check_fits_at_once(std::uint64_t fits, std::uint64_t seed) {
-  ThreadRecord record;
-  SceneRandom random(seed);
-  for (std::uint64_t fit = 0; fit < fits; ++fit) {
-    const TriangleMesh mesh = make_box({1.0, random.between(0.3, 1.0), random.between(0.3, 1.0)});
+TEST(Threads, FitAtOnce) {
+  SoakRandom random(seeded(7));
+  for (int fit = 0; fit < scaled(1); ++fit) {
+    const TriangleMesh mesh = make_box({1.0, random.uniform(0.3, 1.0), random.uniform(0.3, 1.0)});
     const std::vector<Sphere> expected = fitted(mesh, 1);
     std::vector<std::vector<Sphere>> made(2);
     run_at_once(3, [&](std::size_t i) {
@@ -201,20 +159,16 @@ SoakRecord check_fits_at_once(std::uint64_t fits, std::uint64_t seed) {
       }
     });
     for (const std::vector<Sphere>& spheres : made) {
-      record.expect(spheres == expected, "other spheres");
+      EXPECT_EQ(spheres, expected);
     }
-    record.finish_case();
   }
-  return record.record();
 }
 
-SoakRecord check_shared_files(std::uint64_t rounds, std::uint64_t seed) {
-  ThreadRecord record;
-  SceneRandom random(seed);
-  std::string folder = (fs::temp_directory_path() / "spherule-soak-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) throw Error(folder, "cannot be made");
-  const fs::path file = fs::path(folder) / "shared";
-  for (std::uint64_t round = 0; round < rounds; ++round) {
+TEST(Threads, ShareAFile) {
+  SoakRandom random(seeded(7));
+  const TempDir folder;
+  const std::filesystem::path file = folder.path() / "shared";
+  for (int round = 0; round < scaled(20); ++round) {
     const auto size = static_cast<std::size_t>(random.whole(1, 100'000));
     write_file_atomically(file, std::string(size, 'a'));
     std::vector<std::string> read(kThreads);
@@ -226,16 +180,12 @@ SoakRecord check_shared_files(std::uint64_t rounds, std::uint64_t seed) {
       }
     });
     for (const std::string& bytes : read) {
-      record.expect(bytes.size() == size && bytes == std::string(size, bytes.front()),
-                    "a torn file");
+      EXPECT_TRUE(bytes.size() == size && bytes == std::string(size, bytes.front())) << "torn";
     }
-    record.finish_case();
   }
-  std::size_t left = 0;
-  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder)) ++left;
-  record.expect(left == 1, "temporary files are left");
-  fs::remove_all(folder);
-  return record.record();
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "temporary files are left";
 }
 
-}  // namespace spherule
+}  // namespace
+}  // namespace spherule::test

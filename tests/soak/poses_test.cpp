@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Relative poses of two trees: collides(), collide(), within(), PairCache and distance() against
+// all pairs of spheres in exact arithmetic.
 #include "collide/collide.h"
 #include "collide/pair_cache.h"
-#include "tests/soak/cases.h"
 #include "tests/soak/exact_oracle.h"
 #include "tests/soak/random_scene.h"
+#include "tests/soak/scale.h"
+#include "tests/soak/tally.h"
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <string>
 
-namespace spherule {
+namespace spherule::test {
 namespace {
 
 constexpr int kPosesOfAScene = 200;
@@ -25,7 +32,7 @@ struct Placed {
 };
 
 // A pose, near a gap of `clearance` or anywhere.
-Placed make_poses(const ScenePair& scene, SceneRandom& random, double clearance) {
+Placed make_poses(const ScenePair& scene, SoakRandom& random, double clearance) {
   if (random.chance(kNear)) {
     for (int attempt = 0; attempt < 4; ++attempt) {
       if (const auto poses = scene.at_gap(random, clearance + random.small_gap())) {
@@ -37,7 +44,7 @@ Placed make_poses(const ScenePair& scene, SceneRandom& random, double clearance)
 }
 
 // A little further, so that a cache can answer from memory.
-Pose nudged(const Pose& pose, SceneRandom& random, double size) {
+Pose nudged(const Pose& pose, SoakRandom& random, double size) {
   const double step = random.magnitude(1e-14, 1e-2);
   Eigen::Quaterniond turn = pose.rotation();
   if (random.chance(0.5)) turn.vec() += step * turn.norm() * random.in_cube(1.0);
@@ -50,15 +57,7 @@ std::string text(const PlacedSet& a, const PlacedSet& b) {
 
 class PoseCheck {
  public:
-  explicit PoseCheck(SoakReport& report)
-      : report_(report),
-        collides_(report.add("collides")),
-        swapped_(report.add("collides, exchanged")),
-        limited_(report.add("collide, limited")),
-        cached_(report.add("pair cache")),
-        within_(report.add("within")) {}
-
-  void run(const ScenePair& scene, SceneRandom& random) {
+  void run(const ScenePair& scene, SoakRandom& random) {
     PairCache cache(scene.a(), scene.b());
     for (int i = 0; i < kPosesOfAScene; ++i) {
       const auto [poses, is_near] = make_poses(scene, random, 0.0);
@@ -68,20 +67,24 @@ class PoseCheck {
   }
 
   std::uint64_t poses() const { return collides_.cases; }
+  void expect_telling() const {
+    for (const Tally* tally : {&collides_, &swapped_, &limited_, &cached_, &within_}) {
+      tally->expect_telling();
+    }
+  }
 
  private:
   void judge(Tally& tally, const PlacedSet& a, const PlacedSet& b, Verdict verdict, bool truth,
              bool is_near, double clearance, double slack) {
     tally.count(verdict, is_near);
-    if (verdict == Verdict::kFree && truth) report_.add_fault(tally, Fault::kMissed, text(a, b));
-    if (verdict == Verdict::kCollision && !truth &&
-        tally.count_extra(oracle_.gap(a, b).lower - clearance, slack)) {
-      report_.add_fault(tally, Fault::kCrossed, "slack, " + text(a, b));
+    if (verdict == Verdict::kFree && truth) tally.add_fault("missed, " + text(a, b));
+    if (verdict == Verdict::kCollision && !truth && oracle_.gap(a, b).lower - clearance > slack) {
+      tally.add_fault("slack, " + text(a, b));
     }
   }
 
   void query(const ScenePair& scene, const PosePair& poses, bool is_near, PairCache& cache,
-             SceneRandom& random) {
+             SoakRandom& random) {
     const Pose& to_a = poses.world_from_a;
     const Pose& to_b = poses.world_from_b;
     const PlacedSet a{scene.a().spheres(), to_a}, b{scene.b().spheres(), to_b};
@@ -100,7 +103,7 @@ class PoseCheck {
     if (kind == 0) {
       const bool swapped = collides(scene.b(), to_b, scene.a(), to_a);
       judge(swapped_, a, b, verdict_of(swapped), truth, is_near, 0.0, slack);
-      if (swapped != said) report_.add_fault(swapped_, Fault::kOther, text(a, b));
+      if (swapped != said) swapped_.add_fault(text(a, b));
     } else if (kind == 1) {
       CollisionRequest request{.max_pairs = 1};
       if (random.chance(0.5)) {
@@ -110,13 +113,13 @@ class PoseCheck {
       judge(limited_, a, b, result.verdict, truth, is_near, 0.0, slack);
       if (result.distance_lower_bound > 0.0 &&
           result.distance_lower_bound > oracle_.gap(a, b).upper) {
-        report_.add_fault(limited_, Fault::kCrossed, "lower bound, " + text(a, b));
+        limited_.add_fault("lower bound, " + text(a, b));
       }
     }
   }
 
   // From a clearance that the cache knows, straight on to contact or close to it.
-  void approach(const ScenePair& scene, SceneRandom& random, PairCache& cache) {
+  void approach(const ScenePair& scene, SoakRandom& random, PairCache& cache) {
     const double gap = random.magnitude(1e-9, 1.0) * scene.size();
     const auto start = scene.at_gap(random, gap);
     if (!start) return;
@@ -136,11 +139,11 @@ class PoseCheck {
     judge(cached_, a, b, verdict_of(said), oracle_.within(a, b, 0.0), is_near, 0.0,
           collision_slack(scene.a(), to_a, scene.b(), to_b));
     if (said != collides(scene.a(), to_a, scene.b(), to_b)) {
-      report_.add_fault(cached_, Fault::kOther, "another answer, " + text(a, b));
+      cached_.add_fault("another answer, " + text(a, b));
     }
   }
 
-  void check_within(const ScenePair& scene, SceneRandom& random) {
+  void check_within(const ScenePair& scene, SoakRandom& random) {
     const double clearance = random.chance(0.1) ? 0.0 : random.magnitude(1e-12, 1.0) * scene.size();
     const auto [poses, is_near] = make_poses(scene, random, clearance);
     const Pose& to_a = poses.world_from_a;
@@ -152,16 +155,15 @@ class PoseCheck {
           within_slack(scene.a(), to_a, scene.b(), to_b, clearance));
   }
 
-  SoakReport& report_;
   ExactOracle oracle_;
-  Tally& collides_;
-  Tally& swapped_;
-  Tally& limited_;
-  Tally& cached_;
-  Tally& within_;
+  Tally collides_{"collides"};
+  Tally swapped_{"collides, exchanged"};
+  Tally limited_{"collide, limited"};
+  Tally cached_{"pair cache"};
+  Tally within_{"within"};
 };
 
-DistanceRequest random_request(SceneRandom& random, double size) {
+DistanceRequest random_request(SoakRandom& random, double size) {
   DistanceRequest request;
   switch (random.whole(0, 3)) {
     case 0:
@@ -179,21 +181,19 @@ DistanceRequest random_request(SceneRandom& random, double size) {
   return request;
 }
 
-}  // namespace
-
-std::uint64_t check_poses(std::uint64_t poses, std::uint64_t seed, SoakReport& report) {
-  SceneRandom random(seed);
-  PoseCheck check(report);
-  while (check.poses() < poses) {
-    check.run(ScenePair(random), random);
-  }
-  return check.poses();
+TEST(ManyPoses, AreAnsweredRight) {
+  SoakRandom random(seeded(7));
+  PoseCheck check;
+  const auto poses = static_cast<std::uint64_t>(scaled(20'000));
+  while (check.poses() < poses) check.run(ScenePair(random), random);
+  check.expect_telling();
 }
 
-std::uint64_t check_distances(std::uint64_t distances, std::uint64_t seed, SoakReport& report) {
-  SceneRandom random(seed);
+TEST(ManyPoses, DistancesAreBounded) {
+  SoakRandom random(seeded(8));
   ExactOracle oracle;
-  Tally& tally = report.add("distance");
+  Tally tally{"distance"};
+  const auto distances = static_cast<std::uint64_t>(scaled(5'000));
   while (tally.cases < distances) {
     const ScenePair scene(random);
     for (int i = 0; i < kPosesOfAScene; ++i) {
@@ -216,11 +216,34 @@ std::uint64_t check_distances(std::uint64_t distances, std::uint64_t seed, SoakR
       const bool is_upper_right =
           result.upper >= most || (result.upper >= least && oracle.within(a, b, result.upper));
       if (!is_lower_right || !is_upper_right) {
-        report.add_fault(tally, Fault::kCrossed, text(a, b));
+        tally.add_fault(text(a, b));
       }
     }
   }
-  return tally.cases;
+  tally.expect_telling();
 }
 
-}  // namespace spherule
+// Exactly touching, and by the smallest step on either side of it.
+TEST(ExactOracle, IsExact) {
+  ExactOracle oracle;
+  const std::array<Sphere, 1> a{{{{0.0, 0.0, 0.0}, 2.0}}};
+  const std::array<Sphere, 1> b{{{{3.0, 4.0, 0.0}, 3.0}}};
+  // A turn by (3, 4) / 5, which has no exact unit quaternion in double.
+  const Pose turned(Eigen::Quaterniond(2.0, 0.0, 0.0, 1.0), {1e6, 0.0, 0.0});
+  const auto within = [&](double x, double clearance) {
+    return oracle.within({a, turned}, {b, Pose(turned.rotation(), {x, 0.0, 0.0})}, clearance);
+  };
+  // The image of (3, 4, 0) is (9 - 16, 12 + 12, 0) / 5 = (-1.4, 4.8, 0), again 5 long.
+  EXPECT_TRUE(within(1e6, 0.0));
+  EXPECT_FALSE(within(std::nextafter(1e6, 0.0), 0.0));
+  EXPECT_TRUE(within(std::nextafter(1e6, 2e6), 0.0));
+  EXPECT_TRUE(within(std::nextafter(1e6, 0.0), 1e-9));
+  EXPECT_GE(oracle.rational_pairs(), 1u);
+  const GapBounds gap = oracle.gap({a, turned}, {b, turned});
+  EXPECT_LE(gap.lower, 0.0L);
+  EXPECT_GE(gap.upper, 0.0L);
+}
+
+}  // namespace
+
+}  // namespace spherule::test

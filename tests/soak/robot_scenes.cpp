@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/soak/checker_scene.h"
+#include "tests/soak/robot_scenes.h"
 
 #include "base/rounding.h"
 #include "collide/collide.h"
@@ -11,28 +11,71 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <variant>
 
-namespace spherule {
+namespace spherule::test {
 namespace {
 
-double random_size_of_scene(SceneRandom& random) {
+constexpr double kSize = 0.4;
+
+std::vector<PlacedTree> make_obstacles(SoakRandom& random) {
+  std::vector<PlacedTree> obstacles;
+  for (int i = random.whole(1, 3); i > 0; --i) {
+    const int count = random.chance(0.95) ? random.whole(1, 12) : random.whole(100, 300);
+    obstacles.push_back({std::make_shared<const SphereTree>(random_tree(random, count, kSize)),
+                         Pose(random.rotation(), random.in_cube(2.0 * kSize))});
+  }
+  return obstacles;
+}
+
+// Its first joint leads it past `aim`.
+RobotModel make_robot(SoakRandom& random, const Eigen::Vector3d& aim,
+                      const Eigen::Vector3d& direction) {
+  RobotModel robot("link_0");
+  const int joints = random.whole(1, 5);
+  for (int i = 0; i < joints; ++i) {
+    Joint joint;
+    joint.name = "joint_" + std::to_string(i);
+    joint.type = JointType::kPrismatic;
+    joint.axis = direction;
+    joint.parent_from_joint = Pose::from_translation(aim);
+    if (i > 0) {
+      joint.type = random.chance(0.2) ? JointType::kPrismatic : JointType::kRevolute;
+      joint.axis = random.direction();
+      joint.parent_from_joint = Pose(random.rotation(), random.in_cube(kSize));
+    }
+    joint.lower = -100.0;
+    joint.upper = 100.0;
+    const int parent = i == 0 ? 0 : random.whole(1, i);
+    const std::string link = "link_" + std::to_string(i + 1);
+    robot.add_link(link, "link_" + std::to_string(parent), joint);
+    if (i + 1 == joints || random.chance(0.5)) {
+      robot.attach(link, std::make_shared<const SphereTree>(
+                             random_tree(random, random.whole(1, 12), 0.5 * kSize)));
+    }
+  }
+  return robot;
+}
+
+double random_size_of_scene(SoakRandom& random) {
   return random.chance(0.6) ? 1.0 : random.magnitude(1e-3, 1e3);
 }
 
-Pose random_root(SceneRandom& random, double size) {
+Pose random_root(SoakRandom& random, double size) {
   if (random.chance(0.4)) return Pose();
   const double far = random.chance(0.2) ? random.magnitude(1.0, 1e6) : 1.0;
   // A scene takes it with a unit rotation.
   return Pose(unit_rotation(random.rotation()), random.in_cube(far * size));
 }
 
-std::shared_ptr<const SphereTree> body_tree(SceneRandom& random, double size) {
+std::shared_ptr<const SphereTree> body_tree(SoakRandom& random, double size) {
   const double kind = random.unit();
   const int count = kind < 0.3 ? 1 : kind < 0.95 ? random.whole(2, 12) : random.whole(20, 120);
   std::vector<Sphere> spheres;
   const Eigen::Vector3d along = 0.5 * size * random.direction();
   for (int i = 0; i < count; ++i) {
-    const double radius = random.chance(0.1) ? 0.0 : size * random.between(0.01, 0.1);
+    const double radius = random.chance(0.1) ? 0.0 : size * random.uniform(0.01, 0.1);
     spheres.push_back({along * random.unit() + random.in_cube(0.1 * size), radius});
   }
   if (random.chance(0.1)) spheres[0].center.setZero();
@@ -40,12 +83,12 @@ std::shared_ptr<const SphereTree> body_tree(SceneRandom& random, double size) {
       build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
 }
 
-TriangleMesh tetrahedron(SceneRandom& random, double size) {
+TriangleMesh tetrahedron(SoakRandom& random, double size) {
   TriangleMesh mesh;
   const Eigen::Vector3d place = random.in_cube(0.3 * size);
   mesh.vertices = {place, place + size * Eigen::Vector3d::UnitX(),
                    place + size * Eigen::Vector3d::UnitY(),
-                   place + size * random.between(0.1, 1.0) * Eigen::Vector3d::UnitZ()};
+                   place + size * random.uniform(0.1, 1.0) * Eigen::Vector3d::UnitZ()};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
   return mesh;
 }
@@ -56,7 +99,98 @@ std::string numbered(const char* name, std::size_t i) {
 
 }  // namespace
 
-CheckerScene::CheckerScene(SceneRandom& random)
+TreeScene::TreeScene(SoakRandom& random)
+    : obstacles_(make_obstacles(random)),
+      direction_(random.direction()),
+      robot_(make_robot(random,
+                        obstacles_[0].world_from_tree * obstacles_[0].tree->spheres()[0].center,
+                        direction_)) {
+  for (const PlacedTree& obstacle : obstacles_) {
+    add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, static_);
+  }
+}
+
+RobotScene TreeScene::scene() const {
+  RobotScene scene(robot_);
+  AllowedCollisions allowed(robot_);
+  allowed.allow_all();
+  scene.set_allowed_collisions(std::move(allowed));
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    scene.add("obstacle " + std::to_string(i), obstacles_[i].tree, obstacles_[i].world_from_tree);
+  }
+  return scene;
+}
+
+std::vector<double> TreeScene::anywhere(SoakRandom& random) const {
+  std::vector<double> configuration{random.uniform(-3.0, 3.0)};
+  for (int i = 1; i < robot_.variable_count(); ++i) {
+    configuration.push_back(random.uniform(-std::numbers::pi, std::numbers::pi));
+  }
+  return configuration;
+}
+
+template <class Use>
+bool TreeScene::any_pair(std::span<const double> configuration, Use use) {
+  forward_kinematics(robot_, configuration, world_from_link_);
+  for (std::size_t link = 0; link < robot_.links().size(); ++link) {
+    for (const auto& tree : robot_.links()[link].trees) {
+      for (const PlacedTree& obstacle : obstacles_) {
+        if (use(*tree, world_from_link_[link], obstacle)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool TreeScene::bring_to_gap(std::vector<double>& configuration, double gap) {
+  configuration[0] = 0.0;
+  forward_kinematics(robot_, configuration, world_from_link_);
+  movers_.clear();
+  for (std::size_t link = 0; link < robot_.links().size(); ++link) {
+    for (const auto& tree : robot_.links()[link].trees) {
+      add_placed(tree->spheres(), world_from_link_[link], movers_);
+    }
+  }
+  const auto way = way_to_gap(static_, movers_, direction_, gap);
+  if (!way || std::abs(*way) > RobotChecker::kLargestPosition) return false;
+  configuration[0] = *way;
+  return true;
+}
+
+bool TreeScene::touches(std::span<const double> configuration) {
+  return any_pair(
+      configuration, [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
+        return oracle_.within({tree.spheres(), pose},
+                              {obstacle.tree->spheres(), obstacle.world_from_tree}, 0.0);
+      });
+}
+
+GapBounds TreeScene::gap(std::span<const double> configuration) {
+  constexpr long double kFar = std::numeric_limits<double>::infinity();
+  GapBounds least{kFar, kFar};
+  any_pair(configuration,
+           [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
+             const GapBounds gap = oracle_.gap(
+                 {tree.spheres(), pose}, {obstacle.tree->spheres(), obstacle.world_from_tree});
+             least.lower = std::min(least.lower, gap.lower);
+             least.upper = std::min(least.upper, gap.upper);
+             return false;
+           });
+  return least;
+}
+
+double TreeScene::slack(std::span<const double> configuration) {
+  double largest = 0.0;
+  any_pair(configuration,
+           [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
+             largest = std::max(
+                 largest, collision_slack(tree, pose, *obstacle.tree, obstacle.world_from_tree));
+             return false;
+           });
+  return largest;
+}
+
+CheckerScene::CheckerScene(SoakRandom& random)
     : size_(random_size_of_scene(random)),
       world_from_root_(random_root(random, size_)),
       scene_(make_robot(random), world_from_root_),
@@ -66,7 +200,7 @@ CheckerScene::CheckerScene(SceneRandom& random)
   make_pairs(random);
 }
 
-RobotModel CheckerScene::make_robot(SceneRandom& random) {
+RobotModel CheckerScene::make_robot(SoakRandom& random) {
   RobotModel robot("link_0");
   std::vector<std::string> moving;
   const int joints = random.whole(1, random.chance(0.1) ? 24 : 7);
@@ -96,15 +230,15 @@ RobotModel CheckerScene::make_robot(SceneRandom& random) {
   for (std::size_t i = 1; i < moving.size(); ++i) {
     if (!random.chance(0.15)) continue;
     const double multiplier =
-        random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.between(-2.0, 2.0);
-    double offset = random.chance(0.5) ? 0.0 : random.between(-3.0, 3.0);
-    if (random.chance(0.1)) offset = std::clamp(-multiplier * random.between(-3.0, 3.0), -1e5, 1e5);
+        random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.uniform(-2.0, 2.0);
+    double offset = random.chance(0.5) ? 0.0 : random.uniform(-3.0, 3.0);
+    if (random.chance(0.1)) offset = std::clamp(-multiplier * random.uniform(-3.0, 3.0), -1e5, 1e5);
     robot.mimic(moving[i], moving[i - 1], multiplier, offset);
   }
   return robot;
 }
 
-void CheckerScene::make_bodies(SceneRandom& random) {
+void CheckerScene::make_bodies(SoakRandom& random) {
   for (std::size_t i = 0; i < robot().links().size(); ++i) {
     const Link& link = robot().links()[i];
     bodies_.push_back({link.name, true, static_cast<int>(i), link.trees});
@@ -137,10 +271,10 @@ void CheckerScene::make_bodies(SceneRandom& random) {
   }
 }
 
-ObstacleShape CheckerScene::make_shape(SceneRandom& random) const {
+ObstacleShape CheckerScene::make_shape(SoakRandom& random) const {
   const auto length = [&] {
     const double kind = random.unit();
-    return size_ * (kind < 0.7    ? random.between(0.05, 0.8)
+    return size_ * (kind < 0.7    ? random.uniform(0.05, 0.8)
                     : kind < 0.85 ? random.magnitude(1e-8, 1e-2)
                                   : random.magnitude(1.0, 300.0));
   };
@@ -163,7 +297,7 @@ ObstacleShape CheckerScene::make_shape(SceneRandom& random) const {
   }
 }
 
-void CheckerScene::make_obstacles(SceneRandom& random) {
+void CheckerScene::make_obstacles(SoakRandom& random) {
   const double kind = random.unit();
   int count = kind < 0.2 ? 0 : kind < 0.9 ? random.whole(1, 6) : random.whole(8, 40);
   for (std::size_t i = 0; count > 0; ++i, --count) {
@@ -176,7 +310,7 @@ void CheckerScene::make_obstacles(SceneRandom& random) {
       if (const auto* const sphere = std::get_if<SolidSphere>(primitive)) radius = sphere->radius;
       if (const auto* const solid = std::get_if<Capsule>(primitive)) radius = solid->radius;
     }
-    const Eigen::Vector3d at = (radius + size_ * random.between(0.3, 2.0)) * random.direction();
+    const Eigen::Vector3d at = (radius + size_ * random.uniform(0.3, 2.0)) * random.direction();
     const Pose world_from_shape =
         world_from_root_ *
         Pose(random.chance(0.2) ? Eigen::Quaterniond::Identity() : random.rotation(), at);
@@ -224,7 +358,7 @@ std::vector<std::shared_ptr<const SphereTree>> CheckerScene::inflated(const Body
 }
 
 // The padding of a pair goes to the first body, as in a snapshot.
-void CheckerScene::make_pairs(SceneRandom& random) {
+void CheckerScene::make_pairs(SoakRandom& random) {
   for (std::size_t b = bodies_.size(); b-- > 0;) {
     const Body& body = bodies_[b];
     const auto settle = [&](const std::string& other, double& between, bool& region) {
@@ -271,14 +405,14 @@ void CheckerScene::make_pairs(SceneRandom& random) {
   }
 }
 
-std::vector<double> CheckerScene::anywhere(SceneRandom& random) const {
+std::vector<double> CheckerScene::anywhere(SoakRandom& random) const {
   std::vector<double> configuration;
   const double far = random.chance(0.05) ? 95.0 : std::numbers::pi;
   for (const int j : robot().variable_joints()) {
     const bool turns = robot().joints()[static_cast<std::size_t>(j)].turns();
     const double reach =
-        turns ? far : std::min(kLargestJointPosition, random.between(0.2, 2.0) * size_);
-    configuration.push_back(random.between(-reach, reach));
+        turns ? far : std::min(kLargestJointPosition, random.uniform(0.2, 2.0) * size_);
+    configuration.push_back(random.uniform(-reach, reach));
   }
   for (int i = 0; i < 60 && !in_filter_range(configuration); ++i) {
     for (double& variable : configuration) variable *= 0.5;
@@ -344,7 +478,7 @@ double CheckerScene::gap(std::span<const double> configuration) {
   return least;
 }
 
-std::optional<CheckerScene::Border> CheckerScene::find_border(SceneRandom& random) {
+std::optional<CheckerScene::Border> CheckerScene::find_border(SoakRandom& random) {
   std::optional<std::vector<double>> free, contact;
   for (int i = 0; i < 12 && !(free && contact); ++i) {
     std::vector<double> next = anywhere(random);
@@ -371,4 +505,4 @@ std::optional<CheckerScene::Border> CheckerScene::find_border(SceneRandom& rando
   return border;
 }
 
-}  // namespace spherule
+}  // namespace spherule::test
