@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A program of its own, because it replaces the global operator new. collides() allocates nothing
 // on trees that build_tree makes, and answers right where no memory is to be had.
-
 #include "collide/collide.h"
 #include "collide/mechanism/mechanism_check.h"
 #include "collide/meshes/mesh_contact.h"
@@ -10,8 +9,8 @@
 #include "collide/search/traversal.h"
 #include "collide/sweep.h"
 #include "spheretree/build.h"
-#include "tests/collide/counting_new.h"
-#include "tests/collide/trees.h"
+#include "tests/support/counting_new.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@ namespace spherule::test {
 namespace {
 
 TEST(Allocation, CollidesTakesNoMemory) {
-  SceneRandom random(1);
+  Random random(1);
   const SphereTree a = build_tree(random_spheres(random, 2000, 1.0, 0.02));
   const SphereTree b = build_tree(random_spheres(random, 2000, 1.0, 0.02), {.branching = 16});
   const MeshTree mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}});
@@ -44,7 +43,7 @@ TEST(Allocation, CollidesTakesNoMemory) {
 }
 
 TEST(Allocation, SweepsClearancesAndTheCacheTakeNoMemory) {
-  SceneRandom random(3);
+  Random random(3);
   const SphereTree a = build_tree(random_spheres(random, 500, 1.0, 0.02));
   const SphereTree b = build_tree(random_spheres(random, 500, 1.0, 0.02));
   std::vector<Pose> poses;
@@ -78,7 +77,7 @@ TEST(Allocation, ConfirmationTakesNoMemory) {
   };
   const CoveredMesh a(mesh, tree_of_sphere(1.1));
   const CoveredMesh b(small, tree_of_sphere(0.1));
-  SceneRandom random(3);
+  Random random(3);
   int hits = 0;
   std::vector<Pose> poses;
   for (int i = 0; i < 1000; ++i) poses.push_back(random.pose(1.2));
@@ -90,7 +89,7 @@ TEST(Allocation, ConfirmationTakesNoMemory) {
 }
 
 TEST(Allocation, AMechanismsCheckTakesNoMemory) {
-  SceneRandom random(2);
+  Random random(2);
   const auto tree = [&] {
     return std::make_shared<const SphereTree>(build_tree(random_spheres(random, 500, 1.0, 0.02)));
   };
@@ -109,7 +108,7 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   };
   const int before = allocations;
   for (int i = 0; i < 1000; ++i) {
-    const std::array<double, 2> variables = {random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
+    const std::array<double, 2> variables = {random.between(-3.0, 3.0), random.between(-3.0, 3.0)};
     hits += check.collides(variables, scratch, confirm) ? 1 : 0;
     std::array<const double*, MechanismCheck::kBlock> block;
     block.fill(variables.data());

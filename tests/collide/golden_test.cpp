@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // G7: verdicts and pair lists are the same on every machine, as a hash of them. Half of the spheres
 // are in contact up to rounding, where the last bit of the canonical test decides.
-
 #include "collide/meshes/mesh_tree.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/support/hash.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +25,7 @@ void add(const CollisionResult& result, std::ostream& text) {
 }
 
 // Numbers are drawn in separate statements wherever the order of evaluation is not fixed.
-Pose random_pose(SceneRandom& random, double size) {
+Pose golden_pose(Random& random, double size) {
   const Eigen::Quaterniond rotation = random.quaternion();
   return Pose(rotation, random.point(size));
 }
@@ -37,21 +36,21 @@ double distance_of(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
 }
 
 // Random spheres, every second of which touches a point of the other set, up to the test's pad.
-std::vector<Sphere> spheres_near(SceneRandom& random, const Pose& world_from_spheres,
+std::vector<Sphere> spheres_near(Random& random, const Pose& world_from_spheres,
                                  const Pose& world_from_points,
                                  const std::vector<Eigen::Vector3d>& points) {
   std::vector<Sphere> spheres = random_spheres(random, 20, 1.0, 0.1);
   for (std::size_t i = 1; i < spheres.size(); i += 2) {
     const Eigen::Vector3d p =
         world_from_spheres.inverse() * (world_from_points * points[i % points.size()]);
-    const double gap = random.uniform(-1e-13, 1e-13);
+    const double gap = random.between(-1e-13, 1e-13);
     spheres[i].center = p + 0.1 * random.point(1.0);
     spheres[i].radius = std::max(0.0, distance_of(spheres[i].center, p) + gap);
   }
   return spheres;
 }
 
-std::vector<Eigen::Vector3d> random_points(SceneRandom& random, int count) {
+std::vector<Eigen::Vector3d> random_points(Random& random, int count) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < count; ++i) points.push_back(random.point(1.0));
   return points;
@@ -59,14 +58,14 @@ std::vector<Eigen::Vector3d> random_points(SceneRandom& random, int count) {
 
 TEST(Golden, PairsOfSpheres) {
   constexpr std::uint64_t kGolden = 0x44f945caf442076e;
-  SceneRandom random(1);
+  Random random(1);
   std::ostringstream text;
   for (int i = 0; i < kScenes; ++i) {
     const std::vector<Eigen::Vector3d> points = random_points(random, 20);
     std::vector<Sphere> second;
     for (const Eigen::Vector3d& point : points) second.push_back({point, 0.0});
-    const Pose world_from_a = random_pose(random, 1.0);
-    const Pose world_from_b = random_pose(random, i % 2 == 0 ? 1.0 : 5.0);
+    const Pose world_from_a = golden_pose(random, 1.0);
+    const Pose world_from_b = golden_pose(random, i % 2 == 0 ? 1.0 : 5.0);
     const std::vector<Sphere> first = spheres_near(random, world_from_a, world_from_b, points);
     add(collide(build_tree(first), world_from_a, build_tree(second), world_from_b), text);
   }
@@ -76,14 +75,14 @@ TEST(Golden, PairsOfSpheres) {
 
 TEST(Golden, PairsOfSpheresAndTriangles) {
   constexpr std::uint64_t kGolden = 0xeba7c128466af6d5;
-  SceneRandom random(2);
+  Random random(2);
   std::ostringstream text;
   for (int i = 0; i < kScenes; ++i) {
     TriangleMesh mesh;
     mesh.vertices = random_points(random, 24);
     for (int k = 0; k < 24; k += 3) mesh.triangles.emplace_back(k, k + 1, k + 2);
-    const Pose world_from_a = random_pose(random, 1.0);
-    const Pose world_from_b = random_pose(random, i % 2 == 0 ? 1.0 : 5.0);
+    const Pose world_from_a = golden_pose(random, 1.0);
+    const Pose world_from_b = golden_pose(random, i % 2 == 0 ? 1.0 : 5.0);
     const std::vector<Sphere> spheres =
         spheres_near(random, world_from_a, world_from_b, mesh.vertices);
     add(collide(build_tree(spheres), world_from_a, MeshTree(mesh), world_from_b), text);

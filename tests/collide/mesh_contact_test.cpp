@@ -1,34 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact of covered meshes, against rational numbers and against what is built in.
-
 #include "collide/meshes/mesh_contact.h"
 
 #include "base/error.h"
+#include "collide/contact.h"
 #include "geometry/enclosing_sphere.h"
 #include "spheretree/build.h"
-#include "tests/collide/exact_triangles.h"
-#include "tests/collide/trees.h"
 #include "tests/support/effort.h"
+#include "tests/support/exact/shapes.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 namespace spherule::test {
 namespace {
 
+// Contact of covered meshes, against rational numbers and against what is built in.
+
 using Corners = std::array<Eigen::Vector3d, 3>;
 using Eigen::Vector3d;
-
-Corners corners_of(const TriangleMesh& mesh, std::size_t triangle) {
-  const Eigen::Vector3i& t = mesh.triangles[triangle];
-  const auto corner = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-  return {corner(0), corner(1), corner(2)};
-}
 
 // A box from -half to half, facing outwards or inwards, its triangles added to `mesh` with corners
 // of their own, as STL files have them.
@@ -52,7 +51,7 @@ TriangleMesh box_mesh(const Vector3d& half) {
   return mesh;
 }
 
-std::shared_ptr<const SphereTree> tree_of(const std::vector<Sphere>& spheres) {
+std::shared_ptr<const SphereTree> shared_tree(const std::vector<Sphere>& spheres) {
   return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
@@ -77,7 +76,7 @@ std::vector<Sphere> surface_spheres(const TriangleMesh& mesh, int levels) {
 }
 
 CoveredMesh surface_covered(const TriangleMesh& mesh, int levels) {
-  return {mesh, tree_of(surface_spheres(mesh, levels))};
+  return {mesh, shared_tree(surface_spheres(mesh, levels))};
 }
 
 // Spheres around the cells of a grid, which cover a box from -half to half with its inside.
@@ -89,19 +88,7 @@ CoveredMesh solid_covered(const TriangleMesh& mesh, const Vector3d& half, int ce
     spheres.push_back(
         {(index.array() + 0.5).matrix().cwiseProduct(cell) - half, 0.51 * cell.norm()});
   }
-  return {mesh, tree_of(spheres)};
-}
-
-TriangleMesh random_mesh(SceneRandom& random, int triangles, double width) {
-  TriangleMesh mesh;
-  for (int i = 0; i < triangles; ++i) {
-    const Vector3d a = random.point(1.0), edge = random.point(1.0);
-    mesh.vertices.insert(
-        mesh.vertices.end(),
-        {a, a + edge, a + random.uniform(0.0, 1.0) * edge + width * random.point(1.0)});
-    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
-  }
-  return mesh;
+  return {mesh, shared_tree(spheres)};
 }
 
 // Whether any two triangles touch, exactly; only those are examined that are not clearly apart.
@@ -140,12 +127,12 @@ double mesh_gap(const TriangleMesh& a, const Pose& world_from_a, const TriangleM
 // extra is apart by no more than the slack of the spheres and a rest.
 void compare_near_contact(double world, double width, double rest, int least_extra,
                           std::uint64_t seed) {
-  SceneRandom random(seed);
+  Random random(seed);
   int touching = 0, free = 0, extra = 0;
   // Those without width seldom touch.
   for (int i = 0; i < effort(500, width > 0.0 ? 100 : 500); ++i) {
-    const TriangleMesh a = random_mesh(random, random.whole(1, 2), width);
-    const TriangleMesh b = random_mesh(random, random.whole(1, 2), width);
+    const TriangleMesh a = random_triangles(random, random.whole(1, 2), 1.0, width);
+    const TriangleMesh b = random_triangles(random, random.whole(1, 2), 1.0, width);
     const CoveredMesh covered_a = surface_covered(a, random.whole(0, 2));
     const CoveredMesh covered_b = surface_covered(b, random.whole(0, 2));
     const Pose world_from_a = random.pose(world);
@@ -153,8 +140,8 @@ void compare_near_contact(double world, double width, double rest, int least_ext
     // A corner, or a point of an edge or of the face.
     const auto point = [&](const TriangleMesh& mesh, int kind) -> Vector3d {
       const auto [p, q, r] = corners_of(mesh, 0);
-      const double v = kind > 0 ? random.uniform(0.0, 1.0) : 0.0;
-      const double w = kind > 1 ? random.uniform(0.0, 1.0 - v) : 0.0;
+      const double v = kind > 0 ? random.between(0.0, 1.0) : 0.0;
+      const double w = kind > 1 ? random.between(0.0, 1.0 - v) : 0.0;
       return p + v * (q - p) + w * (r - p);
     };
     const int kind = random.whole(0, 3);
@@ -194,7 +181,7 @@ TEST(MeshContact, IsNeverMissedOfDegenerateTriangles) {
 
 // Many triangles under few spheres, so that trees of boxes have several levels.
 TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
-  SceneRandom random(8);
+  Random random(8);
   int hits = 0, alarms = 0;
   for (int i = 0; i < effort(60, 20); ++i) {
     TriangleMesh meshes[2];
@@ -210,7 +197,7 @@ TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
       }
       spheres[k] = {{Vector3d(-0.4, 0, 0), 1.9}, {Vector3d(0.4, 0, 0), 1.9}};
     }
-    const CoveredMesh a(meshes[0], tree_of(spheres[0])), b(meshes[1], tree_of(spheres[1]));
+    const CoveredMesh a(meshes[0], shared_tree(spheres[0])), b(meshes[1], shared_tree(spheres[1]));
     const Pose world_from_a = random.pose(1.0), turned(random.quaternion(), Vector3d::Zero());
     const Pose world_from_b(turned.rotation(),
                             world_from_a.translation() + 1.9 * random.point(1.0));
@@ -239,12 +226,12 @@ bool collides_by_parts(const CoveredMesh& a, const Pose& world_from_a, const Cov
 }
 
 TEST(MeshContact, IsTheSumOfItsParts) {
-  SceneRandom random(5);
+  Random random(5);
   const Vector3d half(0.5, 0.4, 0.3);
   const CoveredMesh box = solid_covered(box_mesh(half), half, 4);
   int hits = 0, alarms = 0;
   for (int i = 0; i < 400; ++i) {
-    const CoveredMesh other = surface_covered(random_mesh(random, 6, 0.2), 1);
+    const CoveredMesh other = surface_covered(random_triangles(random, 6, 1.0, 0.2), 1);
     const Pose world_from_box = random.pose(1.0);
     const Pose world_from_other = random.pose(1.0);
     const bool hit = collides(box, world_from_box, other, world_from_other);
@@ -257,7 +244,7 @@ TEST(MeshContact, IsTheSumOfItsParts) {
 }
 
 TEST(MeshContact, ABodyInsideAnotherCollides) {
-  SceneRandom random(6);
+  Random random(6);
   const Vector3d large = Vector3d::Constant(1.0), small = Vector3d::Constant(0.2);
   const CoveredMesh outer = solid_covered(box_mesh(large), large, 3);
   const CoveredMesh inner = surface_covered(box_mesh(small), 0);
@@ -274,77 +261,59 @@ TEST(MeshContact, ABodyInsideAnotherCollides) {
   }
 }
 
-// Rays that run through edges and corners.
-TEST(MeshContact, ABodyInsideIsFoundFromTheCentre) {
+// What is inside, around a small box that is moved along x.
+TEST(MeshContact, TheInsideIsThatOfClosedShells) {
   const Vector3d large = Vector3d::Constant(1.0);
-  const CoveredMesh outer = solid_covered(box_mesh(large), large, 3);
-  for (const double size : {1e-3, 1e-9, 1e-15}) {
-    const CoveredMesh inner = surface_covered(box_mesh(Vector3d::Constant(size)), 0);
-    EXPECT_TRUE(collides(outer, Pose(), inner, Pose()));
-    EXPECT_FALSE(collides(outer, Pose(), inner, Pose::from_translation({1.0 + 2 * size, 0, 0})) &&
-                 size > 1e-9);
-  }
-}
-
-TEST(MeshContact, EachComponentIsLookedFor) {
+  const TriangleMesh box = box_mesh(large);
+  TriangleMesh hollow = box, inside_out, double_sided = box, open = box, flapped = box;
+  add_box(hollow, Vector3d::Constant(0.6), true);
+  add_box(inside_out, large, true);
+  add_box(double_sided, large, true);
+  open.triangles.pop_back();
+  flapped.vertices.insert(flapped.vertices.end(), {{0, 0, .5}, {.1, 0, .5}, {0, .1, .5}});
+  flapped.triangles.emplace_back(36, 37, 38);
   TriangleMesh two = box_mesh(Vector3d::Constant(0.1));
   add_box(two, Vector3d::Constant(0.1), false, {5, 0, 0});
-  const Vector3d large = Vector3d::Constant(1.0);
-  const CoveredMesh outer = solid_covered(box_mesh(large), large, 3);
-  const CoveredMesh inner = surface_covered(two, 0);
-  EXPECT_TRUE(collides(outer, Pose(), inner, Pose()));
-  EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({-5, 0, 0})));
-  EXPECT_FALSE(collides(outer, Pose(), inner, Pose::from_translation({-2.5, 0, 0})));
-}
-
-TEST(MeshContact, ASealedHollowIsInside) {
-  const Vector3d large = Vector3d::Constant(1.0);
-  TriangleMesh shell = box_mesh(large);
-  add_box(shell, Vector3d::Constant(0.6), true);
-  const CoveredMesh outer = solid_covered(shell, large, 3);
-  EXPECT_TRUE(outer.is_closed());
-  const CoveredMesh inner = surface_covered(box_mesh(Vector3d::Constant(0.1)), 0);
-  EXPECT_TRUE(collides(outer, Pose(), inner, Pose()));
-  EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({0.8, 0, 0})));
-  EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({0.6, 0, 0})));
-  // An inverted shell, and a double-sided one.
-  for (const bool twice : {false, true}) {
-    TriangleMesh inverted;
-    add_box(inverted, large, true);
-    if (twice) add_box(inverted, large);
-    EXPECT_TRUE(collides(solid_covered(inverted, large, 3), Pose(), inner, Pose()));
+  struct Case {
+    const char* name;
+    const TriangleMesh& outer;
+    bool is_closed, has_inside;
+  };
+  const Case cases[] = {{"box", box, true, true},
+                        {"hollow", hollow, true, true},
+                        {"inside out", inside_out, true, true},
+                        {"double-sided", double_sided, true, true},
+                        {"open", open, false, false},
+                        {"with a flap", flapped, false, true}};
+  for (const auto& [name, outer_mesh, is_closed, has_inside] : cases) {
+    SCOPED_TRACE(name);
+    const CoveredMesh outer = solid_covered(outer_mesh, large, 3);
+    EXPECT_EQ(outer.is_closed(), is_closed);
+    // The rays of the smallest ones, from the centre, run through edges and corners.
+    for (const double size : {0.1, 1e-3, 1e-9, 1e-15}) {
+      const CoveredMesh inner = surface_covered(box_mesh(Vector3d::Constant(size)), 0);
+      EXPECT_EQ(collides(outer, Pose(), inner, Pose()), has_inside) << size;
+      EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({-1, 0, 0})));
+      EXPECT_FALSE(collides(outer, Pose(), inner, Pose::from_translation({1.3, 0, 0})));
+    }
+    // Each component is looked for.
+    const CoveredMesh pair = surface_covered(two, 0);
+    EXPECT_EQ(collides(outer, Pose(), pair, Pose::from_translation({-5, 0, 0})), has_inside);
+    EXPECT_FALSE(collides(outer, Pose(), pair, Pose::from_translation({-2.5, 0, 0})));
   }
-}
-
-TEST(MeshContact, AnOpenMeshHasNoInside) {
-  const Vector3d large = Vector3d::Constant(1.0);
-  TriangleMesh open = box_mesh(large);
-  open.triangles.pop_back();
-  const CoveredMesh outer = solid_covered(open, large, 3);
-  EXPECT_FALSE(outer.is_closed());
-  const CoveredMesh inner = surface_covered(box_mesh(Vector3d::Constant(0.1)), 0);
-  EXPECT_FALSE(collides(outer, Pose(), inner, Pose()));
-  EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({-1, 0, 0})));
-  // It does not take the inside from a closed component beside it.
-  TriangleMesh with_flap = box_mesh(large);
-  with_flap.vertices.insert(with_flap.vertices.end(), {{0, 0, .5}, {.1, 0, .5}, {0, .1, .5}});
-  with_flap.triangles.emplace_back(36, 37, 38);
-  const CoveredMesh flapped = solid_covered(with_flap, large, 3);
-  EXPECT_FALSE(flapped.is_closed());
-  EXPECT_TRUE(collides(flapped, Pose(), inner, Pose()));
 }
 
 TEST(MeshContact, EveryPointIsInASphereThatListsItsTriangle) {
-  SceneRandom random(7);
-  const TriangleMesh mesh = random_mesh(random, 40, 0.5);
+  Random random(7);
+  const TriangleMesh mesh = random_triangles(random, 40, 1.0, 0.5);
   std::vector<Sphere> spheres = surface_spheres(mesh, 1);
   const std::vector<Sphere> finer = surface_spheres(mesh, 3);
   spheres.insert(spheres.end(), finer.begin(), finer.end() - 500);
-  const CoveredMesh covered(mesh, tree_of(spheres));
+  const CoveredMesh covered(mesh, shared_tree(spheres));
   for (std::int32_t triangle = 0; triangle < 40; ++triangle) {
     const auto [a, b, c] = corners_of(mesh, static_cast<std::size_t>(triangle));
     for (int k = 0; k < 200; ++k) {
-      const double v = random.whole(0, 4) / 4.0 * random.uniform(0.0, 1.0);
+      const double v = random.whole(0, 4) / 4.0 * random.between(0.0, 1.0);
       const double w = (1.0 - v) * random.whole(0, 4) / 4.0;
       const Vector<Real> p = exact<Real>(a + v * (b - a) + w * (c - a));
       bool found = false;
@@ -360,9 +329,74 @@ TEST(MeshContact, EveryPointIsInASphereThatListsItsTriangle) {
   }
 }
 
+Real exact_overlap(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                   const Pose& world_from_b, const SpherePair& pair) {
+  return -PlacedSphereSets{a.spheres()[static_cast<std::size_t>(pair.a)],
+                           b.spheres()[static_cast<std::size_t>(pair.b)], world_from_a,
+                           world_from_b}
+              .gap();
+}
+
+// For meshes apart, touching, near contact and inside each other.
+TEST(Contact, OfMeshesIsTheDeepestThatTrianglesConfirm) {
+  Random random(2);
+  int triangles = 0;
+  int inside = 0;
+  int removed = 0;
+  int not_deepest = 0;
+  for (int i = 0; i < effort(300, 60); ++i) {
+    const auto mesh_a = covered_tetrahedron(random, random.between(0.1, 2.0));
+    const bool small = i % 4 == 0;  // so that it is inside the other now and then
+    const auto mesh_b = covered_tetrahedron(random, random.between(0.1, 2.0) * (small ? 0.1 : 1.0));
+    const SphereTree& a = mesh_a->cover();
+    const SphereTree& b = mesh_b->cover();
+    const Pose world_from_a = random.pose(i % 2 == 0 ? 0.5 : 100.0);
+    const Pose world_from_b(random.quaternion(),
+                            world_from_a.translation() + random.point(small ? 0.2 : 1.0));
+    const std::optional<Contact> contact =
+        deepest_contact(*mesh_a, world_from_a, *mesh_b, world_from_b);
+    ASSERT_EQ(contact.has_value(), collides(*mesh_a, world_from_a, *mesh_b, world_from_b)) << i;
+    const std::vector<SpherePair> pairs = collide(a, world_from_a, b, world_from_b).pairs;
+    if (!contact) {
+      removed += !pairs.empty();
+      continue;
+    }
+    ASSERT_LE(contact->overlap_depth,
+              exact_overlap(a, world_from_a, b, world_from_b, contact->spheres));
+    const double slack = collision_slack(a, world_from_a, b, world_from_b);
+    int confirmed = 0;
+    int deeper = 0;
+    for (const SpherePair& pair : pairs) {
+      const bool is_confirmed =
+          triangles_touch(*mesh_a, pair.a, world_from_a, *mesh_b, pair.b, world_from_b);
+      confirmed += is_confirmed;
+      const bool is_deeper = exact_overlap(a, world_from_a, b, world_from_b, pair) >
+                             contact->overlap_depth + 2.0 * slack;
+      deeper += is_deeper;
+      const bool counts = is_confirmed || contact->kind == ContactKind::kInside;
+      ASSERT_FALSE(is_deeper && counts) << i;
+    }
+    not_deepest += deeper > 0;
+    ASSERT_EQ(contact->kind, confirmed > 0 ? ContactKind::kTriangles : ContactKind::kInside);
+    ASSERT_EQ(contact->triangles.has_value(), confirmed > 0);
+    if (confirmed == 0) {
+      ++inside;
+      continue;
+    }
+    ++triangles;
+    ASSERT_LE(exact_gap(mesh_a->mesh().triangle(contact->triangles->a), world_from_a,
+                        mesh_b->mesh().triangle(contact->triangles->b), world_from_b),
+              slack);
+  }
+  EXPECT_GT(triangles, effort(60, 10));
+  EXPECT_GT(inside, effort(5, 0));
+  EXPECT_GT(removed, effort(20, 3));
+  EXPECT_GE(not_deepest, effort(1, 0));
+}
+
 std::string refusal(const TriangleMesh& mesh, std::vector<Sphere> spheres) {
   try {
-    const CoveredMesh covered(mesh, tree_of(spheres));
+    const CoveredMesh covered(mesh, shared_tree(spheres));
   } catch (const Error& error) {
     return error.reason();
   }
@@ -390,7 +424,30 @@ TEST(MeshContact, RefusesWhatDoesNotCover) {
                     {{{-2.0 / 3.0, 0, 0}, 1.0 / 3.0}, {{1.0 / 3.0, 0, 0}, 2.0 / 3.0}}),
             "");
   EXPECT_THROW(CoveredMesh(box, nullptr), Error);
-  EXPECT_THROW(CoveredMesh(TriangleMesh{}, tree_of(spheres)), Error);
+  EXPECT_THROW(CoveredMesh(TriangleMesh{}, shared_tree(spheres)), Error);
+}
+
+// A triangle that touches another with a corner, so tiny that its normal underflows: a plane whose
+// normal is not known keeps nothing apart.
+TEST(ListedTriangles, ATriangleWithoutANormalIsNotMissed) {
+  const auto covered = [](const Corners& corners, double radius) {
+    TriangleMesh mesh;
+    mesh.vertices.assign(corners.begin(), corners.end());
+    mesh.triangles.emplace_back(0, 1, 2);
+    const Sphere around{Vector3d::Zero(), radius};
+    return CoveredMesh(mesh, std::make_shared<const SphereTree>(build_tree(std::span(&around, 1))));
+  };
+  const CoveredMesh tiny =
+      covered({Vector3d::Zero(),
+               {0x1.3ecbe6e51fc91p-538, 0x1.c15a47cf5c6b2p-537, -0x1.1b6007535326ap-537},
+               {0x1.5d7930423d229p-537, -0x1.380a5555657e3p-539, -0x1.1ee029e7e25e5p-538}},
+              1e-3);
+  const CoveredMesh other = covered({Vector3d(-0x1.b8156a4p-3, 0x1.3fd9d288p-1, -0x1.a3a8fp-3),
+                                     {0x1.3e8ee648p-1, -0x1.8cbe252p-2, -0x1.e0bf4ecp-4},
+                                     {-0x1.a113177p-2, -0x1.e5eaffep-3, 0x1.4a044bbp-2}},
+                                    2.0);
+  EXPECT_TRUE(collides(tiny, Pose(), other, Pose()));
+  EXPECT_TRUE(collides(other, Pose(), tiny, Pose()));
 }
 
 }  // namespace

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres against triangles on every instruction set, judged in 100 digits and by the test in
-// double for all pairs.
-
 #include "collide/meshes/mesh_search.h"
 
+#include "base/error.h"
 #include "collide/meshes/mesh_contact.h"
+#include "collide/meshes/mesh_tree.h"
 #include "collide/meshes/packed_mesh.h"
 #include "collide/meshes/triangle_leaves.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
-#include "tests/collide/exact_triangles.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/support/effort.h"
+#include "tests/support/exact/shapes.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
@@ -24,6 +23,9 @@
 namespace spherule::test {
 namespace {
 
+// Spheres against triangles on every instruction set, judged in 100 digits and by the test in
+// double for all pairs.
+
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
 Real exact_distance(const Eigen::Vector3d& p, const Pose& world_from_a, const Triangle& corners,
@@ -33,30 +35,30 @@ Real exact_distance(const Eigen::Vector3d& p, const Pose& world_from_a, const Tr
 }
 
 // A point of the triangle: a corner, a point of an edge, or one inside.
-Eigen::Vector3d point_of(SceneRandom& random, const Triangle& t) {
-  const double u = random.uniform(0.0, 1.0);
+Eigen::Vector3d point_of(Random& random, const Triangle& t) {
+  const double u = random.between(0.0, 1.0);
   switch (random.whole(0, 2)) {
     case 0:
       return t[0];
     case 1:
       return t[1] + u * (t[2] - t[1]);
     default:
-      return t[0] + random.uniform(0.0, 1.0 - u) * (t[1] - t[0]) + u * (t[2] - t[0]);
+      return t[0] + random.between(0.0, 1.0 - u) * (t[1] - t[0]) + u * (t[2] - t[0]);
   }
 }
 
 // Ordinary triangles, needles, segments and points.
-Triangle random_triangle(SceneRandom& random, double size) {
+Triangle random_triangle(Random& random, double size) {
   static constexpr double kThin[] = {1.0, 1.0, 1e-3, 1e-6, 1e-7, 1e-8, 1e-12, 0.0};
   const double thin = kThin[random.whole(0, 7)];
   const Eigen::Vector3d a = random.point(size);
   const Eigen::Vector3d edge =
       random.whole(0, 9) == 0 ? Eigen::Vector3d::Zero() : random.point(size).eval();
-  return {a, a + edge, a + random.uniform(0.0, 1.0) * edge + random.point(size * thin)};
+  return {a, a + edge, a + random.between(0.0, 1.0) * edge + random.point(size * thin)};
 }
 
 // Relative gaps at which contact is tested.
-double random_gap(SceneRandom& random) {
+double random_gap(Random& random) {
   static constexpr double kGaps[] = {0.0, 1e-16, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.1};
   return (random.whole(0, 1) == 0 ? -1.0 : 1.0) * kGaps[random.whole(0, 9)];
 }
@@ -85,7 +87,7 @@ bool any_pair_intersects(const SphereTree& a, const Pose& world_from_a, const Me
 }
 
 TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
-  SceneRandom random(11);
+  Random random(11);
   int touching = 0;
   int near = 0;
   int free = 0;
@@ -105,11 +107,28 @@ TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
     if (random.whole(0, 9) != 0) {
       sphere.radius = std::max(0.0, distance.convert_to<double>() * (1.0 + random_gap(random)));
     }
-    const SphereTree tree = build_tree(std::span(&sphere, 1));
+    const SphereTree tree = tree_of(sphere);
     const Real gap = distance - sphere.radius;
     const bool expected = intersects_triangle(tree, 0, world_from_a, mesh, 0, world_from_b);
     ASSERT_TRUE(expected || gap > 0) << "missed by " << gap;
+    // Distances to needles are loose in double.
+    const double slack =
+        2.5 * collision_slack(tree, world_from_a, mesh.tree(), world_from_b) + 1e-9 * size;
+    ASSERT_TRUE(!expected || gap <= slack) << "invented, apart by " << gap;
+    // The same with a part of the radius as a clearance.
+    Sphere smaller = sphere;
+    smaller.radius *= random.between(0.0, 1.0);
+    const double clearance = sphere.radius - smaller.radius;
+    const SphereTree smaller_tree = tree_of(smaller);
+    const internal::RelativePose pose(smaller_tree, world_from_a, mesh.tree(), world_from_b);
+    const bool expected_within =
+        internal::TriangleLeaves(smaller_tree, mesh, pose, clearance).touches(std::int32_t{0}, 0);
+    ASSERT_TRUE(expected_within || distance > Real(smaller.radius) + clearance) << i;
     for (const InstructionSet set : instruction_sets()) {
+      ASSERT_EQ(internal::collides_by(internal::mesh_kernel_for(set), smaller_tree, world_from_a,
+                                      mesh, world_from_b, clearance),
+                expected_within)
+          << i;
       ASSERT_EQ(internal::collides_by(internal::mesh_kernel_for(set), tree, world_from_a, mesh,
                                       world_from_b),
                 expected)
@@ -126,7 +145,7 @@ TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
 
 // The promise that filters in single precision rely on.
 TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
-  SceneRandom random(12);
+  Random random(12);
   int judged = 0;
   int needed = 0;
   for (int i = 0; i < effort(20000, 5000); ++i) {
@@ -152,7 +171,7 @@ TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
 }
 
 TEST(MeshSearch, AnswersAsAllPairsDo) {
-  SceneRandom random(13);
+  Random random(13);
   int hits = 0;
   for (int i = 0; i < effort(600, 150); ++i) {
     const double size = std::pow(10.0, random.whole(-3, 3));
@@ -195,7 +214,7 @@ TEST(MeshSearch, AnswersAsAllPairsDo) {
 
 // A triangle that is said to be so deep in a sphere has a point so far from its surface.
 TEST(MeshSearch, TheDepthInASphereIsNoMoreThanItIs) {
-  SceneRandom random(16);
+  Random random(16);
   int deep = 0;
   int nearly = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -206,7 +225,7 @@ TEST(MeshSearch, TheDepthInASphereIsNoMoreThanItIs) {
     const Pose world_from_b = random.pose(size);
     const Eigen::Vector3d center =
         world_from_b.inverse() * (world_from_a * (point_of(random, triangle) + random.point(size)));
-    const auto other = one_sphere_tree(center, random.uniform(0.0, 2.0 * size));
+    const auto other = one_sphere_tree(center, random.between(0.0, 2.0 * size));
     const auto [index, depth] =
         nearest_triangle(*covered, 0, world_from_a, *other, 0, world_from_b);
     ASSERT_EQ(index, 0);
@@ -222,7 +241,7 @@ TEST(MeshSearch, TheDepthInASphereIsNoMoreThanItIs) {
 }
 
 TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
-  SceneRandom random(14);
+  Random random(14);
   for (const int count : {1, 7, 8, 9, 64, 65, 700}) {
     std::vector<Triangle> triangles;
     for (int k = 0; k < count; ++k) triangles.push_back(random_triangle(random, 1.0));
@@ -268,6 +287,54 @@ TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
     EXPECT_EQ(visit(visit, 0).size(), 3 * triangles.size());
     EXPECT_EQ(seen.size(), triangles.size());
   }
+}
+
+// Spheres against triangles, with the distance of point and triangle in 100 digits as the oracle.
+
+TEST(MeshTree, FindsThePairsOfAllPairs) {
+  Random random(2);
+  int hits = 0;
+  for (int i = 0; i < effort(20, 6); ++i) {
+    const SphereTree a = build_tree(random_spheres(random, 30, 1.0, 0.2));
+    const MeshTree b(random_triangles(random, 20, 0.5, 0.5));
+    const Pose world_from_a = random.pose(0.5);
+    const Pose world_from_b = random.pose(0.5);
+    const CollisionResult result = collide(a, world_from_a, b, world_from_b);
+    ASSERT_TRUE(result.complete);
+    ASSERT_TRUE(std::is_sorted(result.pairs.begin(), result.pairs.end()));
+    ASSERT_EQ(collides(a, world_from_a, b, world_from_b), result.verdict == Verdict::kCollision);
+    for (int j = 0; j < 30; ++j) {
+      for (int k = 0; k < 20; ++k) {
+        const bool found =
+            std::binary_search(result.pairs.begin(), result.pairs.end(), SpherePair{j, k});
+        const Sphere& sphere = a.spheres()[static_cast<std::size_t>(j)];
+        const Real gap = exact_distance(sphere.center, world_from_a, b.triangle(k), world_from_b) -
+                         sphere.radius;
+        ASSERT_EQ(found, gap <= 0) << gap;
+        ASSERT_LE(result.distance_lower_bound, std::max(Real(0), gap));
+        hits += found;
+      }
+    }
+  }
+  EXPECT_GT(hits, effort(30, 8));
+}
+
+TEST(MeshTree, RefusesAMeshItCannotUse) {
+  EXPECT_THROW(MeshTree(TriangleMesh{}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, 1}}}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, -1}}}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, std::nan("")}}, {{0, 0, 0}}}), Error);
+  EXPECT_THROW(MeshTree(TriangleMesh{{{0, 0, 0}}, {{0, 0, 0}}, -1.0}), Error);
+}
+
+// What within() and distance() say of the surface alone.
+TEST(MeshTreeTest, SurfaceWithinAClearance) {
+  const MeshTree cube(cube_mesh());
+  const SphereTree sphere = tree_of({{0.5, 0.5, 0.5}, 0.25});
+  EXPECT_FALSE(within(sphere, Pose(), cube, Pose(), 0.2));
+  EXPECT_TRUE(within(sphere, Pose(), cube, Pose(), 0.25));
+  EXPECT_NEAR(distance(sphere, Pose(), cube, Pose()).lower, 0.25, 1e-12);
+  EXPECT_NEAR(distance(sphere, Pose(), cube, Pose()).upper, 0.25, 1e-12);
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Poses along motions against 100 digits.
-
 #include "collide/motion/motion.h"
 
 #include "base/error.h"
-#include "tests/collide/exact_motion.h"
-#include "tests/collide/exact_scene.h"
-#include "tests/collide/scene_random.h"
+#include "tests/support/exact/poses.h"
+#include "tests/support/exact/spheres.h"
+#include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +22,10 @@ struct Pair {
   Exact exact;
 };
 
-Pair random_turning(SceneRandom& random, double size) {
+Pair random_turning(Random& random, double size) {
   const Pose start = random.pose(size);
   const Eigen::Vector3d axis = random.point(1.0) * std::ldexp(1.0, random.whole(-600, 600));
-  const double angle = std::ldexp(random.uniform(-1.0, 1.0), random.whole(-60, 20));
+  const double angle = std::ldexp(random.between(-1.0, 1.0), random.whole(-60, 20));
   const Eigen::Vector3d displacement = random.point(size);
   const Eigen::Vector3d reference =
       random.whole(0, 1) ? random.point(size) : Eigen::Vector3d::Zero();
@@ -35,22 +34,22 @@ Pair random_turning(SceneRandom& random, double size) {
 }
 
 // Where only the rotation errs.
-Pair random_turning_in_place(SceneRandom& random, double) {
+Pair random_turning_in_place(Random& random, double) {
   const Pose start(random.quaternion(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d axis = random.point(1.0);
-  const double angle = std::ldexp(random.uniform(-1.0, 1.0), random.whole(-60, 20));
+  const double angle = std::ldexp(random.between(-1.0, 1.0), random.whole(-60, 20));
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   return {Motion::turning(start, axis, angle), Exact::turning(start, axis, angle, zero, zero)};
 }
 
-Pair random_between_in_place(SceneRandom& random, double) {
+Pair random_between_in_place(Random& random, double) {
   const Pose start(random.quaternion(), Eigen::Vector3d::Zero());
   const Pose end(random.quaternion(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   return {Motion::between(start, end), Exact::between(start, end, zero)};
 }
 
-Pair random_between(SceneRandom& random, double size) {
+Pair random_between(Random& random, double size) {
   const Pose start = random.pose(size);
   Pose end = random.pose(size);
   if (random.whole(0, 1)) {
@@ -71,12 +70,12 @@ Real error_at(const Pair& pair, double t, const Eigen::Vector3d& p) {
 
 template <class Make>
 void expect_bounded(Make make, std::uint64_t seed, double tightest) {
-  SceneRandom random(seed);
+  Random random(seed);
   Real largest = 0;
   for (int i = 0; i < 1500; ++i) {
     const double size = std::ldexp(1.0, random.whole(-30, 30));
     const Pair pair = make(random, size);
-    for (const double t : {random.uniform(0.0, 1.0), 0.0, 1.0, 1e-9}) {
+    for (const double t : {random.between(0.0, 1.0), 0.0, 1.0, 1e-9}) {
       const Eigen::Vector3d p = random.point(size);
       const double bound = pair.motion.pose_error(p.norm() * (1.0 + 1e-15));
       const Real error = error_at(pair, t, p);
@@ -101,7 +100,7 @@ TEST(Motion, RotationsAreWithinTheBound) {
 }
 
 TEST(Motion, MeetsTheGivenPosesExactly) {
-  SceneRandom random(3);
+  Random random(3);
   for (int i = 0; i < 100; ++i) {
     const Pose start = random.pose(1.0);
     const Pose end = random.pose(1.0);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Solids against FCL, which has a closed formula for a sphere and each of them: a second opinion on
 // what the solids are and where a pose puts them. FCL is no judge within 1e-6 of contact.
-
 #include "collide/solids/primitive.h"
 #include "spheretree/build.h"
 #include "tests/support/effort.h"

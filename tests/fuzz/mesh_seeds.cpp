@@ -71,16 +71,14 @@ std::vector<std::string> threemf_model_seeds() {
 
 std::vector<std::string> dae_seeds() {
   Random random(1);
-  std::vector<std::string> seeds = {dae_text(solid(), Eigen::Matrix4d::Identity()),
-                                    skinned_dae(solid())};
+  std::vector<std::string> seeds = {dae_text(solid(), Eigen::Matrix4d::Identity())};
   for (int i = 0; i < 4; ++i) seeds.push_back(random_dae(solid(), random));
   return seeds;
 }
 
 std::vector<std::string> gltf_seeds() {
   Random random(2);
-  std::vector<std::string> seeds = {gltf_text(solid(), {1, 2, 3}), skinned_gltf(solid()),
-                                    morphed_gltf(solid()), sparse_gltf()};
+  std::vector<std::string> seeds = {gltf_text(solid(), {1, 2, 3}), sparse_gltf()};
   for (int i = 0; i < 4; ++i) seeds.push_back(random_gltf(solid(), random));
   return seeds;
 }

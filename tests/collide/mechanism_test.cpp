@@ -1,0 +1,574 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/error.h"
+#include "base/rounding.h"
+#include "collide/mechanism/coherence_cache.h"
+#include "collide/mechanism/mechanism_check.h"
+#include "collide/meshes/mesh_tree.h"
+#include "collide/pair_cache.h"
+#include "spheretree/build.h"
+#include "spheretree/check.h"
+#include "tests/support/exact/spheres.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/rounding_mode.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/zoo.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spherule::test {
+namespace {
+
+// An arm of length one about the z axis.
+const std::vector<MechanismFrame> kArm(1);
+
+// Whether single precision finds a sphere at the end of the arm apart from one that stands at a
+// distance of `gap` from where it is at the angle, surely in contact, or is uncertain.
+enum class Finding { kApart, kTouch, kUncertain };
+Finding find(double angle, double gap, InstructionSet set) {
+  const double way = 1.0 + 0.2 + gap;
+  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {
+      {Pose(), one_sphere_tree({way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1)}};
+  const std::vector<MechanismPair> pairs(1);
+  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, {.instructions = set});
+  MechanismCheck::Scratch scratch(check);
+  bool queried = false;
+  const auto confirm = [&](const MechanismContact& contact) {
+    EXPECT_EQ(contact.pair.body, 0);
+    EXPECT_EQ(contact.body_sphere, 0);
+    queried = true;
+    return false;
+  };
+  const bool hit = check.collides(std::array{angle}, scratch, confirm);
+  return queried ? Finding::kUncertain : hit ? Finding::kTouch : Finding::kApart;
+}
+
+// The margins are thin: micrometres for an arm of a metre, at every angle that is in range.
+TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
+  Random random(31);
+  std::vector<double> angles = {0.0, 100.0, -100.0};
+  for (int i = -63; i <= 63; ++i) angles.push_back(i * 0.78539816339744831);
+  for (int i = 0; i < 300; ++i) angles.push_back(random.between(-100.0, 100.0));
+  for (const InstructionSet set : instruction_sets()) {
+    for (const double angle : angles) {
+      SCOPED_TRACE(angle);
+      EXPECT_EQ(find(angle, 1e-5, set), Finding::kApart);
+      EXPECT_EQ(find(angle, -2e-5, set), Finding::kTouch);
+      EXPECT_EQ(find(angle, 1e-9, set), Finding::kUncertain);
+      EXPECT_EQ(find(angle, -1e-9, set), Finding::kUncertain);
+    }
+  }
+}
+
+// A tree far from its own frame that the pose leads back: moving its centres costs more than what
+// is left of their offsets lets think.
+TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
+  Random random(32);
+  const std::vector<MechanismPair> pairs(1);
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d far = std::pow(10.0, random.between(8.0, 12.0)) * random.point(1.0);
+    const Pose pose(Eigen::Quaterniond(random.quaternion()).normalized(), Eigen::Vector3d::Zero());
+    const Pose back(pose.rotation(), -(pose * far));
+    const Eigen::Vector3d direction = random.point(1.0).normalized();
+    const double gap = random.between(-1e-3, 1e-3);
+    const std::vector<MechanismBody> bodies = {{0, back, one_sphere_tree(far, 0.1)}};
+    const std::vector<MechanismObstacle> obstacles = {
+        {Pose(), one_sphere_tree((0.2 + gap) * direction, 0.1)}};
+    const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
+    MechanismCheck::Scratch scratch(check);
+    bool queried = false;
+    const auto confirm = [&](const MechanismContact&) {
+      queried = true;
+      return false;
+    };
+    const bool hit = check.collides(std::array{0.0}, scratch, confirm);
+    const PlacedSphereSets exactly{{far, 0.1}, {(0.2 + gap) * direction, 0.1}, back, Pose()};
+    EXPECT_TRUE(queried || hit == exactly.overlap()) << i;
+  }
+}
+
+// Poses are computed in single precision where configurations are checked side by side: over a long
+// chain their error is many times what it is for one configuration.
+TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
+  Random random(33);
+  for (int i = 0; i < 50; ++i) {
+    std::vector<MechanismFrame> frames;
+    std::array<double, 1000> variables;
+    Pose pose;
+    for (int k = 0; k < 1000; ++k) {
+      frames.push_back({.parent = k - 1, .parent_from_frame = random.pose(0.0), .variable = k});
+      variables[static_cast<std::size_t>(k)] = random.between(-3.2, 3.2);
+      const Eigen::AngleAxisd turn(variables[static_cast<std::size_t>(k)],
+                                   Eigen::Vector3d::UnitZ());
+      pose = pose * frames.back().parent_from_frame *
+             Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero());
+    }
+    const std::vector<MechanismBody> bodies = {{999, Pose(), one_sphere_tree({0.3, 0, 0}, 0.1)}};
+    const Eigen::Vector3d away = (0.2 - 1e-9) * random.point(1.0).normalized();
+    const std::vector<MechanismObstacle> obstacles = {
+        {Pose(), one_sphere_tree(pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1)}};
+    const std::vector<MechanismPair> pairs(1);
+    for (const InstructionSet set : instruction_sets()) {
+      const MechanismCheck check(frames, bodies, obstacles, pairs, 0.0, {.instructions = set});
+      MechanismCheck::Scratch scratch(check);
+      std::array<const double*, MechanismCheck::kBlock> block;
+      block.fill(variables.data());
+      std::uint32_t queried = 0;
+      const auto confirm = [&](int index, const MechanismContact&) {
+        queried |= 1U << index;
+        return false;
+      };
+      const MechanismCheck::BlockAnswer answer = check.collides(block, scratch, confirm);
+      EXPECT_EQ(answer.collides | queried, 0xffffU) << i;
+      EXPECT_EQ(answer.out_of_range, 0U);
+    }
+  }
+}
+
+TEST(MechanismCheck, RefusesBadInputByName) {
+  using Frames = std::vector<MechanismFrame>;
+  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), one_sphere_tree({2, 0, 0}, 0.1)}};
+  const std::vector<MechanismPair> pairs(1);
+  const MechanismFrame far{.parent_from_frame = Pose::from_translation({9e14, 0, 0})};
+  MechanismFrame second = far, third = far;
+  second.parent = 0;
+  third.parent = 1;
+  struct Case {
+    std::string names;
+    Frames frames = kArm;
+    std::vector<MechanismBody> bodies;
+    std::vector<MechanismObstacle> obstacles;
+    std::vector<MechanismPair> pairs;
+    double pose_error = 0.0;
+  };
+  const auto tree = bodies[0].tree;
+  std::vector<Case> cases = {
+      {"frame 1", Frames{{}, {.parent = 1}}, bodies, obstacles, pairs},
+      {"frame 1", Frames{{}, {.variable = -1}}, bodies, obstacles, pairs},
+      {"frame 1", Frames{{}, {.variable = std::numeric_limits<int>::max()}}, bodies, obstacles,
+       pairs},
+      {"body 0", kArm, {{1, Pose(), tree}}, obstacles, pairs},
+      {"body 0", kArm, {{0, Pose(), nullptr}}, obstacles, pairs},
+      {"obstacle 0", kArm, bodies, {{Pose(), nullptr}}, pairs},
+      {"pair 0", kArm, bodies, obstacles, {{0, 1}}},
+      {"pair 0", kArm, bodies, obstacles, {{-1, 0}}},
+      {"too far", Frames{far, second, third}, {{2, Pose(), tree}}, obstacles, pairs}};
+  for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) {
+    cases.push_back({"pose error", kArm, bodies, obstacles, pairs, bad});
+  }
+  EXPECT_NO_THROW(MechanismCheck(kArm, bodies, obstacles, pairs, 0.0));
+  for (const Case& bad : cases) {
+    const std::string error = error_of(
+        [&] { MechanismCheck(bad.frames, bad.bodies, bad.obstacles, bad.pairs, bad.pose_error); });
+    EXPECT_NE(error.find(bad.names), std::string::npos) << error;
+  }
+}
+
+TEST(MechanismCheck, RefusesTheScratchOfAnother) {
+  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
+  const std::vector<MechanismObstacle> obstacles = {{Pose(), one_sphere_tree({3, 0, 0}, 0.1)}};
+  const std::vector<MechanismPair> pairs(1);
+  const MechanismCheck other(kArm, bodies, obstacles, pairs, 0.0);
+  MechanismCheck::Scratch scratch(other);
+  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
+  const std::array<double, 1> q = {0.0};
+  std::array<const double*, MechanismCheck::kBlock> block;
+  block.fill(q.data());
+  const auto none = [](const auto&...) { return false; };
+  EXPECT_FALSE(other.collides(q, scratch, none));
+  EXPECT_THROW((void)check.collides(q, scratch, none), Error);
+  EXPECT_THROW((void)check.collides(block, scratch, none), Error);
+  EXPECT_THROW((void)check.is_following(scratch), Error);
+  EXPECT_THROW(check.remember_contact(0, {{1, 0, 0}, 0.1}, 0.1, scratch), Error);
+}
+
+// How far points of a sphere move, against where they are.
+
+using Eigen::Vector3d;
+using internal::KernelFrame;
+using internal::KernelPose;
+using internal::MovedSphere;
+
+// A chain or a tree of frames; two may share a variable.
+std::vector<KernelFrame> random_frames(Random& random, int count) {
+  std::vector<KernelFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    KernelFrame frame = {};
+    const Eigen::Matrix3d rotation = random.quaternion().normalized().toRotationMatrix();
+    const Vector3d origin = random.point(random.whole(0, 2) == 0 ? 0.0 : 1.0);
+    for (int j = 0; j < 3; ++j) {
+      for (int k = 0; k < 3; ++k) frame.rotation[j][k] = rotation(k, j);
+      frame.origin[j] = origin[j];
+    }
+    frame.parent = random.whole(0, 3) == 0 ? random.whole(-1, i - 1) : i - 1;
+    frame.variable = random.whole(0, 9) == 0 ? 0 : i;
+    frame.prismatic = random.whole(0, 3) == 0;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+std::vector<KernelPose> placed(const std::vector<KernelFrame>& frames,
+                               const std::vector<double>& at) {
+  std::vector<Eigen::Isometry3d> poses;
+  std::vector<KernelPose> result;
+  for (const KernelFrame& frame : frames) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    for (int j = 0; j < 3; ++j) {
+      for (int k = 0; k < 3; ++k) pose.linear()(k, j) = frame.rotation[j][k];
+      pose.translation()[j] = frame.origin[j];
+    }
+    const double variable = at[static_cast<std::size_t>(frame.variable)];
+    if (frame.prismatic) {
+      pose.translate(Vector3d(0, 0, variable));
+    } else {
+      pose.rotate(Eigen::AngleAxisd(variable, Vector3d::UnitZ()));
+    }
+    if (frame.parent >= 0) pose = poses[static_cast<std::size_t>(frame.parent)] * pose;
+    poses.push_back(pose);
+    KernelPose& columns = result.emplace_back();
+    for (int j = 0; j < 4; ++j) {
+      for (int k = 0; k < 3; ++k) columns.columns[j][k] = pose.matrix()(k, j);
+    }
+  }
+  return result;
+}
+
+Vector3d image(const KernelPose& pose, const Vector3d& p) {
+  Vector3d result;
+  for (int k = 0; k < 3; ++k) {
+    result[k] = pose.columns[0][k] * p.x() + pose.columns[1][k] * p.y() +
+                pose.columns[2][k] * p.z() + pose.columns[3][k];
+  }
+  return result;
+}
+
+// Of the frames: how many of them share a variable at most.
+double most_uses(const std::vector<KernelFrame>& frames) {
+  std::vector<int> uses(frames.size(), 0);
+  for (const KernelFrame& frame : frames) ++uses[static_cast<std::size_t>(frame.variable)];
+  return *std::max_element(uses.begin(), uses.end());
+}
+
+// Of the sphere's points from the joints that carry it, and at least one.
+double reach(const std::vector<KernelFrame>& frames, const std::vector<KernelPose>& poses,
+             int frame, const Vector3d& center, double radius) {
+  const Vector3d c = image(poses[static_cast<std::size_t>(frame)], center);
+  double result = 1.0;
+  for (int f = frame; f >= 0; f = frames[static_cast<std::size_t>(f)].parent) {
+    const Vector3d origin = image(poses[static_cast<std::size_t>(f)], Vector3d::Zero());
+    result = std::max(result, (c - origin).norm() + radius);
+  }
+  return result;
+}
+
+// To first order the sphere's centre goes by v and all is turned by w: said is |v| + |w| radius,
+// and some point goes by the root of the sum of their squares, of which 60 points miss little. The
+// rest is in the squares of the changes, for what is said and for what is true.
+TEST(MovedSphere, NoPointGoesFurtherThanIsSaid) {
+  Random random(71);
+  int known = 0, tight = 0, curved = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const int count = random.whole(1, 7);
+    const std::vector<KernelFrame> frames = random_frames(random, count);
+    std::vector<double> from(static_cast<std::size_t>(count)), to(from);
+    const double size = std::pow(10.0, random.between(-9.0, 0.3));
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      from[k] = random.between(-3.0, 3.0);
+      to[k] = from[k] + (random.whole(0, 2) == 0 ? 0.0 : size * random.between(-1.0, 1.0));
+    }
+    const std::vector<KernelPose> before = placed(frames, from), after = placed(frames, to);
+    const int frame = random.whole(0, count - 1);
+    const Vector3d center = random.point(1.0);
+    const double radius = random.whole(0, 4) == 0 ? 0.0 : random.between(0.0, 1.0);
+    MovedSphere sphere(frames.data(), frames.size(), 1e-11);
+    EXPECT_EQ(sphere.way_to(from.data()), std::numeric_limits<double>::infinity());
+    sphere.place(frame, center.data(), radius, before.data(), from.data());
+    const double said = sphere.way_to(to.data());
+    if (std::isinf(said)) {
+      EXPECT_GT(size, 0.01);
+      continue;
+    }
+    const auto f = static_cast<std::size_t>(frame);
+    double farthest = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      const Vector3d p = center + radius * random.point(1.0).normalized();
+      farthest = std::max(farthest, (image(after[f], p) - image(before[f], p)).norm());
+    }
+    ASSERT_LE(farthest, said + 1e-14) << i;
+    double changes = 0.0;
+    for (std::size_t k = 0; k < from.size(); ++k) changes += std::abs(to[k] - from[k]);
+    // A variable that moves several frames counts for each.
+    changes *= most_uses(frames);
+    const double bent = changes * changes * reach(frames, before, frame, center, radius);
+    ASSERT_LE(said, 1.5 * farthest + 4.0 * bent + 2e-11 * changes + 1e-14) << i;
+    ++known;
+    tight += farthest > 0.9 * said;
+    curved += size > 0.05;
+  }
+  EXPECT_GT(known, 2500);
+  EXPECT_GT(tight, 800);
+  EXPECT_GT(curved, 100);
+}
+
+TEST(MovedSphere, CountsTheCurvatureOfTheWay) {
+  // Two hinges with parallel axes, one metre between them and another to the tip.
+  KernelFrame hinge = {};
+  for (int k = 0; k < 3; ++k) hinge.rotation[k][k] = 1.0;
+  hinge.parent = -1;
+  KernelFrame second = hinge;
+  second.parent = 0;
+  second.variable = 1;
+  second.origin[0] = 1.0;
+  const std::vector<KernelFrame> frames = {hinge, second};
+  const std::vector<double> from = {0.0, 0.0};
+  const Vector3d tip(1.0, 0.0, 0.0);
+  MovedSphere sphere(frames.data(), 2, 0.0);
+  const std::vector<KernelPose> before = placed(frames, from);
+  sphere.place(1, tip.data(), 0.0, before.data(), from.data());
+  // First order: the tip moves by 2 a - 2 a = 0.
+  const std::vector<double> to = {0.05, -0.1};
+  const std::vector<KernelPose> after = placed(frames, to);
+  const double moved = (image(after[1], tip) - image(before[1], tip)).norm();
+  const double said = sphere.way_to(to.data());
+  EXPECT_GT(moved, 0.002);
+  EXPECT_LE(moved, said);
+  // Terms of second order alone, their lengths a quarter of the reach too large.
+  EXPECT_LT(said, 0.02);
+}
+
+// What a check of a mechanism remembers from one configuration to the next: it saves questions and
+// searches, and changes no answer.
+
+const std::vector<MechanismPair> kOnePair(1);
+constexpr double kNothing = -1.0;  // for a depth: nothing is to be remembered
+
+// An arm of length one about the z axis whose tip is within a large sphere. `confirm` always says
+// yes, and what is to be remembered with it.
+class DeepContact {
+ public:
+  bool is_asked(double angle, double depth) {
+    int queried = 0;
+    const auto confirm = [&](const MechanismContact&) {
+      ++queried;
+      if (depth > 0.0) check_.remember_contact(0, {{1, 0, 0}, 0.1}, depth, scratch_);
+      return true;
+    };
+    EXPECT_TRUE(check_.collides(std::array{angle}, scratch_, confirm));
+    EXPECT_FALSE(check_.is_following(scratch_));
+    EXPECT_LE(queried, 1);
+    return queried > 0;
+  }
+
+  // Rests at zero until a contact of that depth is known.
+  void settle(double depth) {
+    for (int i = 0; i < 5; ++i) is_asked(0.0, depth);
+  }
+
+  // How far the outermost point of the tip goes, to first order.
+  static constexpr double kWayPerAngle = 1.1;
+
+ private:
+  MechanismCheck check_{std::vector<MechanismFrame>(1),
+                        std::vector<MechanismBody>{{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}},
+                        std::vector<MechanismObstacle>{{Pose(), one_sphere_tree({1, 0, 0}, 0.5)}},
+                        kOnePair,
+                        0.0,
+                        {.always_exact = true}};
+  MechanismCheck::Scratch scratch_{check_};
+};
+
+TEST(CoherenceCache, AContactHoldsAsFarAsItsDepth) {
+  constexpr double kDepth = 1e-3;
+  constexpr double kAngle = kDepth / DeepContact::kWayPerAngle;
+  for (const double beyond : {1.01, -1.01}) {
+    DeepContact contact;
+    contact.settle(kDepth);
+    for (const double part : {0.0, 0.5, -0.5, 0.99, -0.99, 0.1}) {
+      EXPECT_FALSE(contact.is_asked(part * kAngle, kNothing)) << part;
+    }
+    EXPECT_TRUE(contact.is_asked(beyond * kAngle, kNothing));
+  }
+}
+
+TEST(CoherenceCache, NothingIsKnownAfterAJump) {
+  constexpr double kDepth = 1.0;
+  DeepContact contact;
+  // The first follows none, the second one that did not follow.
+  EXPECT_TRUE(contact.is_asked(0.0, kDepth));
+  EXPECT_TRUE(contact.is_asked(0.0, kDepth));
+  contact.settle(kDepth);
+  EXPECT_FALSE(contact.is_asked(0.01, kDepth));
+  EXPECT_TRUE(contact.is_asked(0.16, kNothing));
+  for (const double angle : {0.15, 0.14, 0.13}) {
+    EXPECT_TRUE(contact.is_asked(angle, kNothing));
+  }
+  EXPECT_TRUE(contact.is_asked(0.12, kDepth));
+  EXPECT_FALSE(contact.is_asked(0.11, kDepth));
+}
+
+// An arm of turns and shifts with a sphere on every frame. The true bodies are smaller spheres
+// within the spheres, so that many contacts are refused.
+struct Arm {
+  std::vector<MechanismFrame> frames;
+  std::vector<Sphere> spheres;
+  std::vector<Sphere> obstacles;
+
+  static constexpr double kTrueSize = 0.8;
+
+  Vector3d center(std::size_t body, const std::vector<double>& at) const {
+    Pose pose;
+    for (std::size_t f = 0; f <= body; ++f) {
+      pose = pose * frames[f].parent_from_frame;
+      pose = pose * (frames[f].prismatic
+                         ? Pose::from_translation({0.0, 0.0, at[f]})
+                         : Pose(Eigen::Quaterniond(Eigen::AngleAxisd(at[f], Vector3d::UnitZ())),
+                                Vector3d::Zero()));
+    }
+    return pose * spheres[body].center;
+  }
+
+  // By which the true spheres go into each other.
+  double depth(std::size_t body, std::size_t obstacle, const std::vector<double>& at) const {
+    const Sphere& other = obstacles[obstacle];
+    return kTrueSize * (spheres[body].radius + other.radius) -
+           (center(body, at) - other.center).norm();
+  }
+
+  // Always exact: every pair is queried; otherwise pairs that are clearly apart are not.
+  MechanismCheck check(InstructionSet set, bool always_exact) const {
+    std::vector<MechanismBody> bodies;
+    std::vector<MechanismObstacle> things;
+    std::vector<MechanismPair> pairs;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      bodies.push_back(
+          {static_cast<int>(i), Pose(), one_sphere_tree(spheres[i].center, spheres[i].radius)});
+    }
+    for (const Sphere& obstacle : obstacles) {
+      things.push_back({Pose(), one_sphere_tree(obstacle.center, obstacle.radius)});
+    }
+    for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
+      pairs.push_back({static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size())});
+    }
+    return MechanismCheck(frames, bodies, things, pairs, 0.0,
+                          {.instructions = set, .always_exact = always_exact});
+  }
+};
+
+// A closed way of the variables, slow; the obstacles stand where bodies come by.
+struct Way {
+  explicit Way(Random& random, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      start.push_back(random.between(-2.0, 2.0));
+      rate.push_back(random.between(0.001, 0.006));
+    }
+  }
+
+  std::vector<double> at(int step) const {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      result.push_back(start[i] + 0.3 * std::sin(rate[i] * step));
+    }
+    return result;
+  }
+
+  std::vector<double> start;
+  std::vector<double> rate;
+};
+
+Arm random_arm(Random& random, const Way& way, int steps) {
+  Arm arm;
+  for (int f = 0; f < static_cast<int>(way.start.size()); ++f) {
+    arm.frames.push_back({f - 1, random.pose(0.5), f, random.whole(0, 3) == 0});
+    arm.spheres.push_back({random.point(0.3), random.between(0.05, 0.2)});
+  }
+  for (int i = 0; i < 6; ++i) {
+    const auto body =
+        static_cast<std::size_t>(random.whole(0, static_cast<int>(way.rate.size()) - 1));
+    const Vector3d met = arm.center(body, way.at(random.whole(0, steps)));
+    const double radius = random.between(0.05, 0.2);
+    const double apart = random.between(0.7, 1.1) * (arm.spheres[body].radius + radius);
+    arm.obstacles.push_back({met + apart * random.point(1.0).normalized(), radius});
+  }
+  return arm;
+}
+
+TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
+  constexpr int kSteps = 1500;
+  Random random(91);
+  int touching = 0, refused = 0, unasked = 0, asked_anew = 0, queried = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Way way(random, 4);
+    const Arm arm = random_arm(random, way, kSteps);
+    std::vector<MechanismCheck> checks = {arm.check(InstructionSet::kPortable, false)};
+    for (const InstructionSet set : instruction_sets()) checks.push_back(arm.check(set, true));
+    for (std::size_t k = 0; k < checks.size(); ++k) {
+      const MechanismCheck& check = checks[k];
+      MechanismCheck::Scratch scratch(check);
+      for (int step = 0; step < kSteps; ++step) {
+        const std::vector<double> at = way.at(step);
+        int questions = 0;
+        const auto query = [&](MechanismCheck::Scratch& remembering) {
+          questions = 0;
+          return check.collides(at, remembering, [&](const MechanismContact& contact) {
+            ++questions;
+            const auto body = static_cast<std::size_t>(contact.pair.body);
+            const double depth =
+                arm.depth(body, static_cast<std::size_t>(contact.pair.obstacle), at);
+            if (depth < 0.0) return false;
+            const Sphere& sphere = arm.spheres[body];
+            check.remember_contact(contact.pair.body,
+                                   {sphere.center, Arm::kTrueSize * sphere.radius}, depth - 1e-12,
+                                   remembering);
+            return true;
+          });
+        };
+        MechanismCheck::Scratch anew(check);
+        const bool truth = query(anew);
+        const int all_questions = questions;
+        ASSERT_EQ(query(scratch), truth) << i << " at step " << step;
+        if (k == 0) continue;
+        touching += truth;
+        refused += !truth && all_questions > 0;
+        if (!truth) continue;
+        unasked += questions == 0;
+        queried += questions;
+        asked_anew += all_questions;
+      }
+    }
+  }
+  EXPECT_GT(touching, 2000);
+  EXPECT_GT(refused, 1000);
+  EXPECT_GT(unasked, touching * 4 / 5);
+  EXPECT_LT(queried, asked_anew / 4);
+}
+
+TEST(RoundingMode, OthersAreRefused) {
+  const std::vector<Sphere> spheres{{{0, 0, 0}, 1.0}, {{1, 0, 0}, 1.0}};
+  const SphereTree tree = build_tree(spheres);
+  const MechanismCheck mechanism({}, {}, {}, {}, 0.0);
+  const TriangleMesh cube = cube_mesh();
+  expect_rounding_to_nearest_is_needed([] { require_rounding_to_nearest(); }, "test");
+  expect_rounding_to_nearest_is_needed([&] { build_tree(spheres); }, "build_tree");
+  expect_rounding_to_nearest_is_needed([&] { MeshTree{cube}; }, "MeshTree");
+  expect_rounding_to_nearest_is_needed([&] { refit(tree, spheres); }, "refit");
+  expect_rounding_to_nearest_is_needed([&] { check(tree); }, "check");
+  expect_rounding_to_nearest_is_needed([&] { SphereTree{tree.data()}; }, "SphereTree");
+  expect_rounding_to_nearest_is_needed([&] { PairCache(tree, tree); }, "PairCache");
+  expect_rounding_to_nearest_is_needed([&] { MechanismCheck::Scratch{mechanism}; }, "Scratch");
+}
+
+}  // namespace
+}  // namespace spherule::test

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/error.h"
+#include "io/mesh_io.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/zoo.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherule::test {
+
+// Reads files that tests make, each by read_mesh() from a folder of the test.
+class ReadFiles : public ::testing::Test {
+ protected:
+  TriangleMesh read(const std::string& extension, std::string_view bytes) {
+    return read_mesh(dir_.write("part." + extension, bytes));
+  }
+  // The message of the error that reading throws.
+  std::string error(const std::string& extension, std::string_view bytes) {
+    try {
+      read(extension, bytes);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+  ::testing::AssertionResult refused(const std::string& extension, std::string_view bytes,
+                                     const std::string& why) {
+    const std::string message = error(extension, bytes);
+    if (message.find(why) != std::string::npos) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure() << "'" << message << "' lacks '" << why << "'";
+  }
+
+  // Files that differ from a good one by a replacement, and a part of what is said of each.
+  struct Refusal {
+    std::string from, to, why;
+  };
+  void expect_refused(const std::string& extension, const std::string& good,
+                      const std::vector<Refusal>& refusals) {
+    for (const auto& [from, to, why] : refusals) {
+      EXPECT_TRUE(refused(extension, replaced(good, from, to), why)) << from << " -> " << to;
+    }
+  }
+  // The text with its first `from`, which has to be there, replaced.
+  static std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+
+  TriangleMesh cube_ = cube_mesh();
+  TempDir dir_;
+};
+
+}  // namespace spherule::test
