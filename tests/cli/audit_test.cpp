@@ -20,20 +20,18 @@ class AuditTest : public CommandTest {
 
 TEST_F(AuditTest, ForeignSpheresThatCover) {
   write_spheres("ball.json", {{1, 0.005, 0.005, 1.03}});  // the corners are at 1.000025
-  const Outcome result = run({"audit", "bar.stl", "ball.json", "--json"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const Outcome result = expect_exit(0, "audit bar.stl ball.json --json");
   const json certificate = json::parse(result.out);
   EXPECT_EQ(certificate.at("covered"), true);
   EXPECT_EQ(certificate.at("against"), "mesh and its inside");
   EXPECT_TRUE(certificate.at("deepest_leak").is_null());
-  const std::string text = run({"audit", "bar.stl", "ball.json"}).out;
-  EXPECT_NE(text.find("(proved)"), std::string::npos) << text;
+  const std::string text = run("audit bar.stl ball.json").out;
+  EXPECT_TRUE(has(text, "(proved)"));
 }
 
 TEST_F(AuditTest, ForeignSpheresThatLeak) {
   write_spheres("ball.json", {{1, 0.005, 0.005, 0.9}});
-  const Outcome result = run({"audit", "bar.stl", "ball.json", "--json"});
-  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const Outcome result = expect_exit(1, "audit bar.stl ball.json --json");
   const json certificate = json::parse(result.out);
   EXPECT_EQ(certificate.at("covered"), false);
   const double depth = std::sqrt(1.00005) - 0.9;
@@ -46,19 +44,18 @@ TEST_F(AuditTest, ForeignSpheresThatLeak) {
     const double x = certificate.at("deepest_leak").at(axis++);
     EXPECT_NEAR(std::abs(x - half), half, 0.003);
   }
-  const Outcome text = run({"audit", "bar.stl", "ball.json"});
-  EXPECT_EQ(text.exit_code, 1);
-  EXPECT_NE(text.out.find("deepest at ("), std::string::npos) << text.out;
+  const Outcome text = expect_exit(1, "audit bar.stl ball.json");
+  EXPECT_TRUE(has(text.out, "deepest at ("));
 }
 
 TEST_F(AuditTest, NoSpheresCoverNothing) {
   write_spheres("none.json", {});
-  EXPECT_EQ(run({"audit", "bar.stl", "none.json"}).exit_code, 1);
+  expect_exit(1, "audit bar.stl none.json");
 }
 
 TEST_F(AuditTest, MinExternalChoosesTheSolid) {
   write_spheres("ball.json", {{1, 1, 1, 1.75}});
-  const Outcome result = run({"audit", "box.stl", "ball.json", "--min-external", "4", "--json"});
+  const Outcome result = run("audit box.stl ball.json --min-external 4 --json");
   const json certificate = json::parse(result.out);
   EXPECT_EQ(certificate.at("against"), "simplified solid");
   EXPECT_EQ(certificate.at("min_external_diameter"), 4.0);
@@ -68,8 +65,8 @@ TEST_F(AuditTest, MinExternalChoosesTheSolid) {
 
 TEST_F(AuditTest, ScaleOverrides) {
   write_spheres("ball.json", {{0.1, 0.0005, 0.0005, 0.103}});
-  EXPECT_EQ(run({"audit", "bar.stl", "ball.json"}).exit_code, 1);
-  EXPECT_EQ(run({"audit", "bar.stl", "ball.json", "--scale", "0.1"}).exit_code, 0);
+  expect_exit(1, "audit bar.stl ball.json");
+  expect_exit(0, "audit bar.stl ball.json --scale 0.1");
 }
 
 TEST_F(AuditTest, TheAnswerDoesNotDependOnThreads) {
@@ -87,20 +84,20 @@ TEST_F(AuditTest, BadInput) {
   write_spheres("ball.json", {{1, 1, 1, 1.75}});
   write("broken.json", "{\"format\":\"spherule-spheres\"");
   write("other.json", "{\"format\":\"something-else\",\"version\":1,\"spheres\":[]}");
-  expect_refusal({"audit", "missing.stl", "ball.json"}, "missing.stl: ");
-  expect_refusal({"audit", "box.stl", "missing.json"}, "missing.json: ");
-  expect_refusal({"audit", "box.stl", "broken.json"}, "broken.json: ");
-  expect_refusal({"audit", "box.stl", "other.json", "--json"}, "other.json: ");
-  expect_refusal({"audit", "box.stl", "ball.json", "--min-external", "-1"}, "--min-external: ");
-  expect_refusal({"audit", "box.stl", "ball.json", "--min-external", "nan"}, "--min-external: ");
-  expect_refusal({"audit", "box.stl", "ball.json", "--scale", "0"}, "scale");
-  expect_refusal({"audit", "box.stl", "ball.json", "--threads", "-1"}, "--threads");
+  expect_refusals({{"audit missing.stl ball.json", "missing.stl: "},
+                   {"audit box.stl missing.json", "missing.json: "},
+                   {"audit box.stl broken.json", "broken.json: "},
+                   {"audit box.stl other.json --json", "other.json: "},
+                   {"audit box.stl ball.json --min-external -1", "--min-external: "},
+                   {"audit box.stl ball.json --min-external nan", "--min-external: "},
+                   {"audit box.stl ball.json --scale 0", "scale"},
+                   {"audit box.stl ball.json --threads -1", "--threads"}});
 }
 
 TEST_F(AuditTest, RefusalsNameTheFileThatIsTooLargeOrTooFine) {
   write_spheres("far.json", {{1, 1, 1, 1e12}});
-  expect_refusal({"audit", "box.stl", "far.json"}, "far.json: sphere 0: reaches more than");
-  expect_refusal({"audit", "box.stl", "far.json", "--min-external", "1e-9"},
+  expect_refusal("audit box.stl far.json", "far.json: sphere 0: reaches more than");
+  expect_refusal("audit box.stl far.json --min-external 1e-9",
                  "box.stl: grid step: too fine for a model");
 }
 
@@ -109,7 +106,7 @@ TEST_F(AuditTest, BadOptionsInTheFileAreRefusedWithItsName) {
   const auto refuse = [&](const std::string& options, const std::string& reason) {
     write("bad.json",
           R"({"format":"spherule-spheres","version":1,"spheres":[],"options":{)" + options + "}}");
-    expect_refusal({"audit", "box.stl", "bad.json"}, "bad.json: " + reason);
+    expect_refusal("audit box.stl bad.json", "bad.json: " + reason);
   };
   refuse(R"("min-external":0)", "min external diameter: ");
   refuse(R"("min-external":-1)", "min-external: ");
@@ -135,7 +132,7 @@ TEST_F(AuditTest, OptionsOfReadingMayBeWholeNumbers) {
     write("whole.json", R"({"format":"spherule-spheres","version":1,)"
                         R"("spheres":[{"center":[1,0.005,0.005],"radius":1.03}],"options":{)" +
                             options + "}}");
-    const Outcome result = run({"audit", "bar.stl", "whole.json"});
+    const Outcome result = run("audit bar.stl whole.json");
     EXPECT_EQ(result.err, "");
     return result.exit_code;
   };
@@ -145,9 +142,8 @@ TEST_F(AuditTest, OptionsOfReadingMayBeWholeNumbers) {
 
 TEST_F(AuditTest, RepairMakesALeakingSetCover) {
   write_spheres("ball.json", {{1, 1, 1, 1.5}, {0.5, 0.5, 0.5, 0.1}});
-  const Outcome result = run(
-      {"audit", "box.stl", "ball.json", "--json", "--repair", "mended.json", "--max-error", "0.4"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const Outcome result = expect_exit(0, {"audit", "box.stl", "ball.json", "--json", "--repair",
+                                         "mended.json", "--max-error", "0.4"});
   const json out = json::parse(result.out);
   EXPECT_EQ(out.at("covered"), false);  // as it was
   const json& repair = out.at("repair");
@@ -157,12 +153,12 @@ TEST_F(AuditTest, RepairMakesALeakingSetCover) {
   EXPECT_EQ(mended.at("spheres").size(), 2 + repair.at("added").get<std::size_t>());
   EXPECT_GT(repair.at("grown").get<std::size_t>() + repair.at("added").get<std::size_t>(), 0U);
   EXPECT_EQ(mended.at("options").at("min-external"), 1.6);
-  EXPECT_EQ(run({"audit", "box.stl", "mended.json"}).exit_code, 0);
+  expect_exit(0, "audit box.stl mended.json");
   // A set that covers stays as it is.
-  ASSERT_EQ(run({"audit", "box.stl", "mended.json", "--repair", "again.json"}).exit_code, 0);
+  expect_exit(0, "audit box.stl mended.json --repair again.json");
   EXPECT_EQ(read_json("again.json").at("spheres"), mended.at("spheres"));
-  expect_refusal({"audit", "box.stl", "ball.json", "--max-error", "1"}, "--repair");
-  expect_refusal({"audit", "box.stl", "ball.json", "--repair", "ball.json"}, "ball.json");
+  expect_refusal("audit box.stl ball.json --max-error 1", "--repair");
+  expect_refusal("audit box.stl ball.json --repair ball.json", "ball.json");
 }
 
 }  // namespace

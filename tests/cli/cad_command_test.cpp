@@ -9,16 +9,12 @@
 #include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 
-#include <gtest/gtest.h>
-
 #include <csignal>
 #include <cstddef>
 #include <exception>
 #include <limits>
 #include <random>
-#include <string>
 #include <sys/wait.h>
-#include <vector>
 
 namespace spherule {
 namespace {
@@ -47,7 +43,7 @@ class CadCommand : public CommandTest {
     const Outcome outcome = run_with_reader(script);
     EXPECT_EQ(outcome.exit_code, 2) << script;
     EXPECT_EQ(outcome.out, "") << script;
-    EXPECT_NE(outcome.err.find(reason), std::string::npos) << script << outcome.err;
+    EXPECT_TRUE(has(outcome.err, reason)) << script;
   }
 };
 
@@ -105,19 +101,16 @@ TEST_F(CadCommand, WhatIsReadIsSentExactly) {
 TEST_F(CadCommand, ReadsAsTheLibraryDoes) {
   test::write_step(test::shape_named("torus"), folder_ / "part.step");
   const CadPart part = read_cad(folder_ / "part.step");
-  const Outcome outcome = run({"info", "part.step"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find(std::to_string(part.mesh.triangles.size()) + " triangles"),
-            std::string::npos)
-      << outcome.out;
+  const Outcome outcome = expect_exit(0, "info part.step");
+  EXPECT_TRUE(has(outcome.out, std::to_string(part.mesh.triangles.size()) + " triangles"));
   write("noise.step", "what is this\n");
   try {
     read_cad(folder_ / "noise.step");
     ADD_FAILURE() << "accepted";
   } catch (const Error& error) {
-    expect_refusal({"info", "noise.step"}, "noise.step: " + error.reason());
+    expect_refusal("info noise.step", "noise.step: " + error.reason());
   }
-  expect_refusal({"info", "none.step"}, "none.step: cannot be read: No such file");
+  expect_refusal("info none.step", "none.step: cannot be read: No such file");
 }
 
 TEST_F(CadCommand, AReaderThatCrashesOrNeverEndsIsAnError) {
@@ -137,8 +130,8 @@ TEST_F(CadCommand, AReaderThatCrashesOrNeverEndsIsAnError) {
 TEST_F(CadCommand, TheReaderEndsAtItsLimitOfProcessorTime) {
   test::write_step(test::shape_named("torus"), folder_ / "part.step");
   const auto read_within = [&](const std::string& seconds, const std::string& chord_error) {
-    const std::vector<std::string> arguments = {
-        "part", (folder_ / "part.step").string(), "1", chord_error, "0.5", seconds};
+    const Words arguments = {"part", (folder_ / "part.step").string(), "1", chord_error, "0.5",
+                             seconds};
     EXPECT_EQ(arguments.size(), std::size_t{kCadArguments - 1});
     return internal::run_program(SPHERULE_CAD_READER, arguments, kCadAnswer);
   };
@@ -178,7 +171,7 @@ TEST_F(CadCommand, NoBrokenFileEndsIt) {
       }
     }
     write("broken.step", broken);
-    const Outcome outcome = run({"info", "broken.step"});
+    const Outcome outcome = run("info broken.step");
     EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 2)
         << outcome.exit_code << ", mutant " << i;
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/cli/check_fixture.h"
-
-#include <string>
-#include <vector>
+#include "tests/cli/command_test_support.h"
+#include "tests/cli/robot_fixtures.h"
+#include "tests/support/effort.h"
 
 namespace spherule {
 namespace {
@@ -15,7 +14,7 @@ TEST_F(CheckTest, ConfigurationsOrMotions) {
   EXPECT_EQ(configurations["configurations"], 2);
   EXPECT_TRUE(configurations["first_contact"].is_null());
 
-  const json motions = checked(1, {"--edges"});
+  const json motions = checked(1, "--edges");
   EXPECT_EQ(motions["verdict"], "collision");
   EXPECT_EQ(motions["motions"], 1);
   EXPECT_EQ(motions["colliding"], 1);
@@ -36,7 +35,7 @@ TEST_F(CheckTest, ConfigurationsOrMotions) {
   EXPECT_EQ(motions["pairs"][0]["count"], 1);
 
   write("path.csv", "turn,slide\n0,1\n90,0.5\n");
-  EXPECT_EQ(checked(0, {"--edges"})["verdict"], "free");
+  EXPECT_EQ(checked(0, "--edges")["verdict"], "free");
 }
 
 TEST_F(CheckTest, FirstAndDeepestContacts) {
@@ -49,11 +48,9 @@ TEST_F(CheckTest, FirstAndDeepestContacts) {
   EXPECT_EQ(report["worst_contact"]["line"], 5);
   EXPECT_NEAR(report["first_contact"]["depth"].get<double>(), 0.0105, 1e-6);
   EXPECT_NEAR(report["worst_contact"]["depth"].get<double>(), 0.0405, 1e-6);
-  const Outcome table = run(command({}));
-  EXPECT_EQ(table.exit_code, 1);
-  EXPECT_NE(table.out.find("collision: 5 configurations, 3 of them collide"), std::string::npos)
-      << table.out;
-  EXPECT_NE(table.out.find("40.5"), std::string::npos) << table.out;
+  const Outcome table = expect_exit(1, command({}));
+  EXPECT_TRUE(has(table.out, "collision: 5 configurations, 3 of them collide"));
+  EXPECT_TRUE(has(table.out, "40.5"));
 }
 
 // What a motion meets behind its first contact is a pair, too.
@@ -61,7 +58,7 @@ TEST_F(CheckTest, AllThatAMotionTouchesIsNamed) {
   write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
     {"name": "near", "ball": {"radius": 0.1}, "pose": {"position": [-0.5, 0, 0]}},
     {"name": "far", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0, 0]}}]})");
-  const json report = checked(1, {"--edges"});
+  const json report = checked(1, "--edges");
   ASSERT_EQ(report["pairs"].size(), 2u);
   for (const std::size_t i : {0U, 1U}) {
     const json& pair = report["pairs"][i];
@@ -72,27 +69,15 @@ TEST_F(CheckTest, AllThatAMotionTouchesIsNamed) {
   }
 }
 
-TEST_F(CheckTest, AnObstacleThatIsFarAwayLooksLikeMillimetres) {
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "table", "box": {"size": [600, 800, 50]}, "pose": {"position": [600, 0, 0]}}]})");
-  const Outcome outcome = run(command({}));
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_NE(
-      outcome.err.find("cell.json: obstacle table is 600 m from the origin: lengths in scenes "
-                       "are metres"),
-      std::string::npos)
-      << outcome.err;
-}
-
 TEST_F(CheckTest, GrazingIsNotProved) {
   write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
     {"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -0.050001]}}]})");
   // Along the floor, which is a plane, a micrometre is enough.
-  EXPECT_EQ(checked(0, {"--edges", "--resolution", "0.01"})["verdict"], "free");
+  EXPECT_EQ(checked(0, "--edges --resolution 0.01")["verdict"], "free");
   // Only where x is 0.47, shortly before three quarters of the way.
   write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
     {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.47, 0.150000001, 0]}}]})");
-  const json report = checked(1, {"--edges", "--resolution", "0.01"});
+  const json report = checked(1, "--edges --resolution 0.01");
   EXPECT_EQ(report["verdict"], "not proved");
   EXPECT_EQ(report["colliding"], 0);
   const json& open = report["not_proved"];
@@ -106,7 +91,7 @@ TEST_F(CheckTest, GrazingIsNotProved) {
 TEST_F(CheckTest, ObstaclesOfAllKinds) {
   write_box("block.stl", {1000, 1000, 1000});
   write_spheres("balls.json", {{0.0, 0.0, 0.0, 0.01}});
-  run({"tree", "balls.json", "-o", "balls.tree"});
+  run("tree balls.json -o balls.tree");
   write("scan.xyz", "0 0 0\n0.001 0 0\n");
   const auto scene = [](const std::string& shape) {
     return R"({"format": "spherule-scene", "version": 1, "obstacles": [{"name": "thing", )" +
@@ -165,14 +150,14 @@ TEST_F(CheckTest, AddsPadding) {
 
 TEST_F(CheckTest, OneConfigurationHasNoMotion) {
   write("path.csv", "0.5 0\n");
-  const json report = checked(0, {"--edges"});
+  const json report = checked(0, "--edges");
   EXPECT_EQ(report["configurations"], 1);
   EXPECT_FALSE(report.contains("motions"));
 }
 
 TEST_F(CheckTest, TheLastMotionIsProvedToo) {
   write("path.csv", "-1 0\n-0.9 0\n1 0\n");
-  const json report = checked(1, {"--edges"});
+  const json report = checked(1, "--edges");
   EXPECT_EQ(report["motions"], 2);
   EXPECT_EQ(report["first_contact"]["line"], 2);
   EXPECT_EQ(report["first_contact"]["to_line"], 3);
@@ -208,23 +193,20 @@ TEST_F(CheckTest, PairsThatAreLeftOut) {
   write("three.yml", spheres);
   write("cell.json", scene + "}");
   write("path.csv", "0 0\n");
-  const std::vector<std::string> line = {"check",    "three.urdf", "cell.json",
-                                         "path.csv", "--spheres",  "three.yml"};
-  EXPECT_EQ(run(line).exit_code, 1);
+  const Words line = "check three.urdf cell.json path.csv --spheres three.yml";
+  expect_exit(1, line);
   write("three.yml", spheres + "self_collision_ignore: {a: [c]}\ncollision_sphere_buffer: 0.01\n");
-  const Outcome ignored = run(line);
-  EXPECT_EQ(ignored.exit_code, 0) << ignored.out;
-  EXPECT_NE(ignored.err.find("1 of the pairs of links are ignored"), std::string::npos)
-      << ignored.err;
-  EXPECT_NE(ignored.err.find("its buffers are not added"), std::string::npos) << ignored.err;
+  const Outcome ignored = expect_exit(0, line);
+  EXPECT_TRUE(has(ignored.err, "1 of the pairs of links are ignored"));
+  EXPECT_TRUE(has(ignored.err, "its buffers are not added"));
   write("three.yml", spheres);
   write("cell.json", scene + R"(, "robot": {"srdf": "three.srdf"}})");
   write("three.srdf", R"(<robot name="three"><disable_collisions link1="a" link2="gone"/>
     <disable_collisions link1="gone" link2="c"/></robot>)");
-  EXPECT_EQ(run(line).exit_code, 1);
+  expect_exit(1, line);
   write("three.srdf", R"(<robot name="three"><disable_collisions link1="a" link2="gone"/>
     <disable_collisions link1="c" link2="a"/></robot>)");
-  EXPECT_EQ(run(line).exit_code, 0);
+  expect_exit(0, line);
 }
 
 TEST_F(CheckTest, PointsAreScaledAndThinnedOut) {
@@ -246,15 +228,38 @@ TEST_F(CheckTest, PointsAreScaledAndThinnedOut) {
   EXPECT_EQ(checked(1)["verdict"], "collision");
 }
 
-TEST_F(CheckTest, WarnsOfWhatIsNotChecked) {
-  write("cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "cup", "mesh": {"file": "cup.obj"}, "pose": {"position": [0, 0, 5]}}]})");
-  write("slider.json", R"({"hand": {"centers": [[0, 0, 0], [0, 0, 0]], "radii": [0.05, -1]}})");
-  const Outcome outcome = run(command({}));
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
-  EXPECT_NE(outcome.err.find("cup: the mesh is open"), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("1 spheres are switched off"), std::string::npos) << outcome.err;
+// What is not checked, or looks wrong, is a warning of one line; the exit code does not change.
+TEST_F(CheckTest, Warnings) {
+  write("sheet.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n");
+  write("mesh.json", wall_and(R"("attached": [{"name": "tool", "link": "hand",
+    "mesh": {"file": "sheet.obj"}, "pose": {"position": [0.5, 0, 0]}}])"));
+  write("far.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
+    {"name": "table", "box": {"size": [600, 800, 50]}, "pose": {"position": [600, 0, 0]}}]})");
+  write("off.json", R"({"hand": {"centers": [[0, 0, 0], [0, 0, 0]], "radii": [0.05, -1]}})");
+  write("own.xrdf",
+        "format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\n"
+        "self_collision: {geometry: own}\ngeometry:\n"
+        "  g: {spheres: {hand: [{center: [0, 0, 0], radius: 0.1}]}}\n  own: {spheres: {}}\n");
+  write("two.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]},
+                        "ghost": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
+  write("degrees.csv", "-1 0\n-1 45\n-1.1 90\n-1.1 180\n");
+  struct Case {
+    std::string scene, path, spheres, warning;
+  };
+  const std::vector<Case> cases = {
+      {"mesh.json", "path.csv", "slider.json", "tool: its mesh is open"},
+      {"far.json", "path.csv", "slider.json", "obstacle table is 600 m from the origin"},
+      {"cell.json", "path.csv", "off.json", "1 spheres are switched off"},
+      {"cell.json", "path.csv", "own.xrdf", "the geometry 'own' that it names for self-collisions"},
+      {"cell.json", "path.csv", "two.json --ignore-unknown-links", "'ghost'; they are left out"},
+      {"cell.json", "degrees.csv", "slider.json", "its angles look like degrees"}};
+  for (const Case& one : cases) {
+    const Outcome outcome = expect_exit(0, "check slider.urdf " + one.scene + " " + one.path +
+                                               " --effort 0 --spheres " + one.spheres);
+    EXPECT_TRUE(outcome.err.starts_with("spherule: warning: ")) << outcome.err;
+    EXPECT_TRUE(has(outcome.err, one.warning));
+  }
+  EXPECT_EQ(run("check slider.urdf cell.json degrees.csv --degrees --spheres slider.json").err, "");
 }
 
 TEST_F(CheckTest, RefusesBadInput) {
@@ -264,11 +269,11 @@ TEST_F(CheckTest, RefusesBadInput) {
   write("path.csv", "slide,elbow\n0,0\n");
   refused("path.csv: line 1: the robot has no joint 'elbow'");
   write("path.csv", "0 0\n\n0 800\n");
-  expect_refusal(command({"--edges"}), "path.csv: line 3: joint turn is at a position beyond 100");
+  expect_refusal(command("--edges"), "path.csv: line 3: joint turn is at a position beyond 100");
   write("path.csv", "0 0\n");
-  expect_refusal(command({"--edges", "--resolution", "0"}), "resolution");
-  expect_refusal(command({"--resolution", "0.01"}), "--edges");
-  expect_refusal(command({"--continuous", "shortest"}), "--edges");
+  expect_refusals({{command("--edges --resolution 0"), "resolution"},
+                   {command("--resolution 0.01"), "--edges"},
+                   {command("--continuous shortest"), "--edges"}});
   write("cell.json", wall_and(R"("obstacle": [])"));
   refused("cell.json: the key 'obstacle' is not known here");
   write("cell.json", wall_and(R"("allowed_contacts": [{"body": "arm", "other": "wall"}])"));
@@ -279,72 +284,104 @@ TEST_F(CheckTest, RefusesBadInput) {
   write("cell.json", wall_and(""));
   write("slider.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
   refused("slider.json: has spheres of 1 link that the robot has not got: 'arm'");
-  expect_refusal({"check", "none.urdf", "cell.json", "path.csv"}, "none.urdf");
-  expect_refusal({"check", "slider.urdf"}, "scene");
-}
-
-// A robot whose covering is refused, by then.
-TEST_F(CheckTest, RefusesScenesBeforeTheRobotIsCovered) {
-  write("huge.urdf",
-        R"(<robot name="huge"><link name="base"/><link name="hand"><collision><geometry>
-    <box size="1e4 1e4 1e4"/></geometry></collision></link><joint name="turn" type="continuous">
-    <parent link="base"/><child link="hand"/></joint></robot>)");
-  write("path.csv", "0\n");
-  const auto refused = [this](const std::string& keys, const std::string& reason) {
+  const std::vector<std::pair<std::string, std::string>> scenes = {
+      {R"("padding": [{"body": "hnad", "distance": 0.1}])", "hnad: there is no link"},
+      {R"("attached": [{"name": "t", "link": "hand", "mesh": {"file": "none.stl"}}])", "none.stl"},
+      {R"("attached": [{"name": "t", "link": "hnad", "tree": {"file": "t"}}])", "cell.json: "},
+      {R"("regions": [{"body": "hnad", "name": "tip", "ball": {"center": [0, 0, 0], "radius": 1}}])",
+       "hnad: "},
+      {R"("robot": {"srdf": "none.srdf"})", "none.srdf: "}};
+  write("one.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
+    "spheres": [{"center": [0, 0, 0], "radius": 0.05}]})");
+  for (const auto& [keys, reason] : scenes) {
     write("cell.json", wall_and(keys));
-    expect_refusal({"check", "huge.urdf", "cell.json", "path.csv"}, reason);
-  };
-  refused("", "link 'hand': is");
-  refused(R"("padding": [{"body": "hnad", "distance": 0.1}])", "hnad: there is no link");
-  refused(R"("attached": [{"name": "tool", "link": "hand", "mesh": {"file": "none.stl"}}])",
-          "none.stl: ");
-  refused(R"("attached": [{"name": "tool", "link": "hnad", "tree": {"file": "cell.json"}}])",
-          "hnad: ");
-  refused(R"("regions": [{"body": "hnad", "name": "tip", "ball": {"center": [0, 0, 0],
-          "radius": 1}}])",
-          "hnad: ");
-  refused(R"("robot": {"srdf": "none.srdf"})", "none.srdf: ");
-  expect_refusal({"check", "huge.urdf", "cell.json", "path.csv", "--pairs", "none.pairs"}, "none.");
-}
-
-TEST_F(CheckTest, ALongListOfMotionsIsCut) {
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.47, 0.150000001, 0]}}]})");
-  const auto table_of = [this](int motions) {
-    std::string path = "-1 0\n";
-    for (int i = 0; i < motions; ++i) path += i % 2 == 0 ? "1 0\n" : "-1 0\n";
-    write("path.csv", path);
-    return run(command({"--edges", "--resolution", "0.01"})).out;
-  };
-  const auto rows_of = [](const std::string& table) {
-    std::size_t rows = 0;
-    const std::string row = "not proved beyond line ";
-    for (std::size_t at = table.find(row); at != table.npos; at = table.find(row, at + 1)) ++rows;
-    return rows;
-  };
-  const std::string whole = table_of(20);
-  EXPECT_EQ(rows_of(whole), 20U) << whole;
-  EXPECT_EQ(whole.find(" more\n"), whole.npos) << whole;
-  const std::string cut = table_of(23);
-  EXPECT_EQ(rows_of(cut), 20U) << cut;
-  EXPECT_TRUE(cut.ends_with("\nand 3 more\n")) << cut;
+    expect_refusal(command({}), reason);
+  }
+  write("cell.json", wall_and(""));
+  const std::string check = "check slider.urdf cell.json path.csv --spheres ";
+  expect_refusals({{check + "one.json", "one.json: holds the spheres of one mesh"},
+                   {check + "slider.json --pairs none.pairs", "none."},
+                   {check + "slider.json --view path.csv", "path.csv"}});
+  expect_refusal("check none.urdf cell.json path.csv", "none.urdf");
+  expect_refusal("check slider.urdf", "scene");
 }
 
 // What stands in no spheres is not checked, so that nothing is called free.
 TEST_F(CheckTest, NothingIsFreeWithAShapeLeftOut) {
   write("slider.json", R"({"wrist": {"centers": [[0, 0, 0]], "radii": [0.01]}})");
-  Outcome outcome = run(command({}));
-  EXPECT_EQ(outcome.exit_code, 1);
+  Outcome outcome = expect_exit(1, command({}));
   EXPECT_TRUE(outcome.out.starts_with("not proved")) << outcome.out;
-  EXPECT_NE(outcome.err.find("link hand has a shape but no spheres"), std::string::npos)
-      << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "link hand has a shape but no spheres"));
 
   write("slider.json", R"(<robot name="slider"><link name="hand">
     <collision><geometry><sphere radius="0.05"/></geometry></collision>
     <collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
   outcome = run(command({}));
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.err.find("1 shapes are no spheres"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "1 shapes are no spheres"));
+}
+
+// `check` where it makes spheres itself, of the robot and of what is attached to it.
+
+TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
+  write_box("tool.stl", {0.1, 0.02, 0.02});
+  write("cell.json", wall_and(R"("attached": [{"name": "tool", "link": "wrist",
+    "mesh": {"file": "tool.stl"}, "pose": {"position": [0.05, -0.01, -0.01]}}],
+    "allowed_contacts": [{"body": "tool", "other": "hand"}])"));
+  write("path.csv", "-0.3 0\n-0.1 0\n0.03 0\n");
+  const Outcome outcome =
+      expect_exit(1, "check slider.urdf cell.json path.csv --max-error 0.04 --effort 0 --json");
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["colliding"], 2);
+  EXPECT_EQ(report["first_contact"]["first"]["name"], "tool");
+  EXPECT_EQ(report["first_contact"]["line"], 2);
+}
+
+// Which of a link's geometries stands for it: what is covered, and what must stand in spheres.
+TEST_F(CheckTest, GeometryIsWhatIsAskedFor) {
+  write("two.urdf", R"(<robot name="two"><link name="base"/><link name="hand">
+    <visual><geometry><box size="0.02 0.02 0.02"/></geometry></visual>
+    <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("path.csv", "-0.045\n");
+  Words line = "check two.urdf cell.json path.csv --max-error 0.02 --effort 0";
+  expect_exit(1, line);
+  line.insert(line.end(), {"--geometry", "visual"});
+  expect_exit(0, line);
+  // A link that is only to be seen needs spheres only where the visual geometry stands for it.
+  write("seen.urdf", R"(<robot name="seen"><link name="base"><visual><geometry>
+    <sphere radius="0.02"/></geometry></visual></link><link name="hand"/>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("path.csv", "-0.1\n");
+  line = {"check", "seen.urdf", "cell.json", "path.csv", "--spheres", "slider.json"};
+  expect_exit(0, line);
+  line.insert(line.end(), {"--geometry", "visual"});
+  const Outcome seen = expect_exit(1, line);
+  EXPECT_TRUE(has(seen.err, "link base has a shape but no spheres"));
+}
+
+// What is attached has its own max error, and one geometry, whatever the robot's are.
+TEST_F(CheckTest, AttachedMeshesAreCoveredAsTheySay) {
+  write_box("tool.stl", {0.1, 0.1, 0.1});
+  write("seen.urdf", R"(<robot name="seen"><link name="base"/><link name="hand"><visual><geometry>
+    <sphere radius="0.01"/></geometry></visual></link>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  // 0.025 from the wall: one sphere around the cube reaches 0.037 beyond its faces.
+  write("path.csv", "-0.3255\n");
+  const auto exit_code_with = [this](const std::string& max_error) {
+    write("cell.json", wall_and(R"("attached": [{"name": "tool", "link": "hand",
+      "mesh": {"file": "tool.stl"}, "pose": {"position": [0.2, -0.05, -0.05]})" +
+                                max_error + "}]"));
+    const Outcome outcome =
+        run("check seen.urdf cell.json path.csv --geometry visual --max-error 0.04 --effort 0");
+    EXPECT_EQ(outcome.err, "");
+    return outcome.exit_code;
+  };
+  EXPECT_EQ(exit_code_with(""), 1);
+  EXPECT_EQ(exit_code_with(R"(, "max_error": 0.02)"), 0);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include "tests/support/child_process.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -31,6 +33,56 @@ std::string without_progress(const std::string& text) {
 
 }  // namespace
 
+Words::Words(const char* line) {
+  std::istringstream stream(line);
+  for (std::string word; stream >> word;) push_back(word);
+}
+
+Words joined(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+::testing::AssertionResult has(const std::string& text, const std::string& part) {
+  const bool found = text.find(part) != std::string::npos;
+  return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
+         << "\"" << part << "\" in:\n"
+         << text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+nlohmann::json scene_of(const std::string& page) {
+  const std::string start = "<script id=\"scene\" type=\"application/json\">";
+  const std::size_t begin = page.find(start);
+  const std::size_t end = page.find("</script>", begin);
+  EXPECT_NE(begin, std::string::npos);
+  EXPECT_NE(end, std::string::npos);
+  return nlohmann::json::parse(page.substr(begin + start.size(), end - begin - start.size()));
+}
+
+std::vector<float> floats_of(const std::string& text) {
+  static const std::string kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(kDigits.find(c));
+    count += 6;
+    if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 255u);
+  }
+  std::vector<float> numbers(bytes.size() / 4);
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * 4);
+  return numbers;
+}
+
 void CommandTest::SetUp() {
   std::string pattern = (fs::temp_directory_path() / "spherule-cli-XXXXXX").string();
   ASSERT_NE(mkdtemp(pattern.data()), nullptr);
@@ -41,7 +93,7 @@ void CommandTest::TearDown() {
   fs::remove_all(folder_);
 }
 
-pid_t CommandTest::start(const std::vector<std::string>& arguments) {
+pid_t CommandTest::start(const Words& arguments) {
   return start_process(SPHERULE_COMMAND, arguments,
                        {.folder = folder_, .out = kOut, .error = kErr});
 }
@@ -53,20 +105,29 @@ Outcome CommandTest::finish(pid_t process) {
           .err = exists(kErr) ? without_progress(read(kErr)) : ""};
 }
 
-Outcome CommandTest::run(const std::vector<std::string>& arguments) {
+Outcome CommandTest::run(const Words& arguments) {
   return finish(start(arguments));
 }
 
-void CommandTest::expect_refusal(const std::vector<std::string>& arguments,
-                                 const std::string& reason) {
+void CommandTest::expect_refusal(const Words& arguments, const std::string& reason) {
+  const std::string line = ::testing::PrintToString(arguments);
   const Outcome result = run(arguments);
-  std::string line;
-  for (const std::string& argument : arguments) line += argument + " ";
   EXPECT_EQ(result.exit_code, 2) << line;
   EXPECT_EQ(result.out, "") << line;
   EXPECT_TRUE(result.err.starts_with("spherule: ")) << line << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << line << result.err;
-  EXPECT_NE(result.err.find(reason), std::string::npos) << line << result.err;
+  EXPECT_TRUE(has(result.err, reason)) << line;
+}
+
+void CommandTest::expect_refusals(const std::vector<Refusal>& refusals) {
+  for (const Refusal& refusal : refusals) expect_refusal(refusal.arguments, refusal.reason);
+}
+
+Outcome CommandTest::expect_exit(int exit_code, const Words& arguments) {
+  Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, exit_code)
+      << ::testing::PrintToString(arguments) << outcome.out << outcome.err;
+  return outcome;
 }
 
 void CommandTest::write(const std::string& file, const std::string& bytes) {

@@ -8,9 +8,35 @@
 #include <filesystem>
 #include <string>
 #include <sys/types.h>
+#include <utility>
 #include <vector>
 
 namespace spherule {
+
+// Words of a command line, also written as one line that is split at its spaces.
+struct Words : std::vector<std::string> {
+  using vector::vector;
+  Words(const char* line);
+  Words(const std::string& line) : Words(line.c_str()) {}
+  Words(vector words) : vector(std::move(words)) {}
+};
+
+Words joined(Words words, const Words& more);
+
+// Whether a text has a part; a failure shows both.
+::testing::AssertionResult has(const std::string& text, const std::string& part);
+
+std::vector<std::string> lines_of(const std::string& text);
+
+// The scene that a page of `view` carries, and the numbers of its base64 texts of 32-bit floats.
+nlohmann::json scene_of(const std::string& page);
+std::vector<float> floats_of(const std::string& text);
+
+// A command line that is refused, and a part of the message.
+struct Refusal {
+  Words arguments;
+  std::string reason;
+};
 
 // What a run of the built command left behind, without the lines of progress on standard error. A
 // run that a signal ended has exit code -signal.
@@ -27,14 +53,17 @@ class CommandTest : public ::testing::Test {
   void TearDown() override;
 
   // Runs `spherule arguments...` in the folder.
-  Outcome run(const std::vector<std::string>& arguments);
+  Outcome run(const Words& arguments);
   // Starts it and returns its process; finish() waits for it.
-  pid_t start(const std::vector<std::string>& arguments);
+  pid_t start(const Words& arguments);
   Outcome finish(pid_t process);
 
   // Runs it and expects the refusal of bad input: exit code 2, nothing on standard output, one line
   // on standard error that holds `reason`.
-  void expect_refusal(const std::vector<std::string>& arguments, const std::string& reason);
+  void expect_refusal(const Words& arguments, const std::string& reason);
+  void expect_refusals(const std::vector<Refusal>& refusals);
+  // Runs it and expects its exit code.
+  Outcome expect_exit(int exit_code, const Words& arguments);
 
   void write(const std::string& file, const std::string& bytes);
   std::string read(const std::string& file) const;

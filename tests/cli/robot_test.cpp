@@ -4,25 +4,27 @@
 #include "spheretree/check.h"
 #include "spheretree/tree_file.h"
 #include "tests/cli/command_test_support.h"
+#include "tests/cli/robot_fixtures.h"
 #include "tests/robot/cover/cover_oracle.h"
+#include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <signal.h>
-#include <string>
 #include <thread>
 #include <variant>
-#include <vector>
 
 namespace spherule {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+
 using SpheresOfLinks = std::map<std::string, std::vector<Sphere>>;
 
 // A mesh in metres and a mirrored one in millimetres, a cylinder, a sphere, and a link with
@@ -63,16 +65,13 @@ class RobotTest : public CommandTest {
   }
 
   // `spherule robot` with what makes it quick, and `more`.
-  std::vector<std::string> command(const std::vector<std::string>& more,
-                                   const char* proofs = "none") const {
-    std::vector<std::string> line = {
-        "robot", "arm.urdf",  "-o",          "out",        "--max-error", "0.06",     "--effort",
-        "0",     "--package", "parts=parts", "--postures", "100",         "--proofs", proofs};
-    line.insert(line.end(), more.begin(), more.end());
-    return line;
+  Words command(const Words& more, const char* proofs = "none") const {
+    return joined({"robot", "arm.urdf", "-o", "out", "--max-error", "0.06", "--effort", "0",
+                   "--package", "parts=parts", "--postures", "100", "--proofs", proofs},
+                  more);
   }
 
-  std::vector<std::string> files_in(const std::string& folder) const {
+  Words files_in(const std::string& folder) const {
     std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_ / folder)) {
       names.insert(entry.path().filename().string());
@@ -116,16 +115,14 @@ void expect_covered(const std::vector<Sphere>& spheres, const Pose& pose,
 }
 
 TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
-  const Outcome result = run(command({}, "boxes"));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Outcome result = expect_exit(0, command({}, "boxes"));
   // No progress bar: not a terminal.
   EXPECT_EQ(result.err,
             "spherule: warning: in the zero posture finger and base touch, by their meshes, too\n");
   EXPECT_EQ(files_in("out"),
-            (std::vector<std::string>{"arm_1.base.tree", "arm_1.curobo.yml", "arm_1.finger.tree",
-                                      "arm_1.foam.json", "arm_1.pairs", "arm_1.report.json",
-                                      "arm_1.spheres.json", "arm_1.spheres.urdf", "arm_1.srdf",
-                                      "arm_1.upper arm.tree", "arm_1.xrdf"}));
+            (Words{"arm_1.base.tree", "arm_1.curobo.yml", "arm_1.finger.tree", "arm_1.foam.json",
+                   "arm_1.pairs", "arm_1.report.json", "arm_1.spheres.json", "arm_1.spheres.urdf",
+                   "arm_1.srdf", "arm_1.upper arm.tree", "arm_1.xrdf"}));
 
   const RobotSpheres spheres = read_back("arm_1.spheres.json");
   EXPECT_EQ(spheres.robot, "arm_1");
@@ -172,16 +169,14 @@ TEST_F(RobotTest, WritesEveryFormatSoThatItReadsBack) {
 
 TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
-  const Outcome table = run(command({"--format", "json"}));
-  ASSERT_EQ(table.exit_code, 0) << table.err;
-  EXPECT_EQ(files_in("out"), (std::vector<std::string>{"arm_1.report.json", "arm_1.spheres.json"}));
-  EXPECT_NE(table.out.find("upper arm"), std::string::npos) << table.out;
-  EXPECT_NE(table.out.find("flange     no collision geometry"), std::string::npos) << table.out;
-  EXPECT_NE(table.out.find("total"), std::string::npos) << table.out;
+  const Outcome table = expect_exit(0, command("--format json"));
+  EXPECT_EQ(files_in("out"), (Words{"arm_1.report.json", "arm_1.spheres.json"}));
+  EXPECT_TRUE(has(table.out, "upper arm"));
+  EXPECT_TRUE(has(table.out, "flange     no collision geometry"));
+  EXPECT_TRUE(has(table.out, "total"));
 
   const std::string spheres = read("out/arm_1.spheres.json");
-  const Outcome again = run(command({"--json", "--format", "json", "--threads", "1"}));
-  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const Outcome again = expect_exit(0, command("--json --format json --threads 1"));
   EXPECT_EQ(read("out/arm_1.spheres.json"), spheres) << "equal bytes";
   const json summary = json::parse(again.out);
   EXPECT_EQ(summary.at("robot"), "arm_1");
@@ -210,7 +205,7 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
   EXPECT_EQ(summary.at("total").at("sphere_count"), count);
 
   // The report has what judges of the simplification need.
-  ASSERT_EQ(run(command({"--format", "json", "--external-spheres"})).exit_code, 0);
+  expect_exit(0, command("--format json --external-spheres"));
   const json report = read_json("out/arm_1.report.json");
   for (const json& link : report.at("links")) {
     if (link.at("sphere_count") == 0) continue;
@@ -224,17 +219,17 @@ TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   for (int milliseconds = 500;; milliseconds *= 2) {
     ASSERT_LT(milliseconds, 100000);
-    const pid_t process =
-        start({"robot", "arm.urdf", "-o", "out", "--max-error", "0.015", "--effort", "1000000",
-               "--package", "parts=parts", "--proofs", "none", "--format", "json"});
+    const pid_t process = start(
+        "robot arm.urdf -o out --max-error 0.015 --effort 1000000 --package parts=parts --proofs "
+        "none --format json");
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     kill(process, SIGTERM);
     const Outcome outcome = finish(process);
     ASSERT_EQ(outcome.exit_code, -SIGTERM) << outcome.out << outcome.err;
     if (!exists("out/arm_1.report.json")) continue;  // no link was begun yet
-    EXPECT_NE(outcome.err.find("spherule: interrupted: "), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.out.find(" *\n"), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find("\n* interrupted: the search"), std::string::npos) << outcome.out;
+    EXPECT_TRUE(has(outcome.err, "spherule: interrupted: "));
+    EXPECT_TRUE(has(outcome.out, " *\n"));
+    EXPECT_TRUE(has(outcome.out, "\n* interrupted: the search"));
     break;
   }
   const json report = read_json("out/arm_1.report.json");
@@ -248,48 +243,43 @@ TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
   EXPECT_GT(interrupted, 0U);
   for (const char* file : {"out/arm_1.report.json", "out/arm_1.spheres.json"}) {
     const std::string told = run({"info", file}).out;
-    EXPECT_NE(told.find("\ninterrupted: the search"), std::string::npos) << told;
+    EXPECT_TRUE(has(told, "\ninterrupted: the search"));
   }
   EXPECT_EQ(report.at("total").at("covered"), true);
   EXPECT_EQ(report.at("total").at("links"), 3);
-  EXPECT_EQ(run({"audit-robot", "arm.urdf", "out/arm_1.spheres.json", "--max-error", "0.015",
-                 "--package", "parts=parts"})
-                .exit_code,
-            0);
+  expect_exit(
+      0, "audit-robot arm.urdf out/arm_1.spheres.json --max-error 0.015 --package parts=parts");
 }
 
 TEST_F(RobotTest, WeldingShutsACrackInMillimetresOrMetres) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   std::string text = read("lug.stl");
   const std::string corner = "vertex 50 40 30";
-  ASSERT_NE(text.find(corner), std::string::npos);
+  ASSERT_TRUE(has(text, corner));
   text.replace(text.find(corner), corner.size(), "vertex 50.00001 40 30");
   write("lug.stl", text);
-  const Outcome open = run(command({"--format", "json"}));
-  EXPECT_EQ(open.exit_code, 0) << open.err;
-  EXPECT_NE(open.err.find("link upper arm: its mesh is open"), std::string::npos) << open.err;
-  EXPECT_NE(open.err.find("(--weld) shuts them"), std::string::npos) << open.err;
+  const Outcome open = expect_exit(0, command("--format json"));
+  EXPECT_TRUE(has(open.err, "link upper arm: its mesh is open"));
+  EXPECT_TRUE(has(open.err, "(--weld) shuts them"));
   const auto without = read_json("out/arm_1.report.json").at("links").at(1);
   EXPECT_TRUE(without.at("certificate").at("volume_ratio").is_null());
 
-  const Outcome shut = run(command({"--format", "json", "--weld", "1e-7"}));
-  EXPECT_EQ(shut.exit_code, 0) << shut.err;
-  EXPECT_EQ(shut.err.find("its mesh is open"), std::string::npos) << shut.err;
+  const Outcome shut = expect_exit(0, command("--format json --weld 1e-7"));
+  EXPECT_FALSE(has(shut.err, "its mesh is open"));
   const auto welded = read_json("out/arm_1.report.json").at("links").at(1);
   EXPECT_TRUE(welded.at("certificate").at("volume_ratio").is_number());
   EXPECT_GE(welded.at("vertex_error"), 1e-8) << "the vertices moved";
 
-  expect_refusal(command({"--weld", "-1"}), "--weld");
+  expect_refusal(command("--weld -1"), "--weld");
 }
 
 TEST_F(RobotTest, OptionsOfOneLinkAndOfAnSrdfCount) {
   write("arm.srdf", R"(<robot name="arm_1"><group name="hand"><link name="finger"/></group>
     <disable_collisions link1="finger" link2="base" reason="Never"/>
     <disable_collisions link1="finger" link2="tool of another" reason="Never"/></robot>)");
-  const Outcome result =
-      run(command({"--json", "--srdf", "arm.srdf", "--format", "srdf,curobo", "--tool-link",
-                   "flange", "--link", "finger:max-error=0.03,min-external=0.06,padding=0.005"}));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Outcome result = expect_exit(
+      0, command("--json --srdf arm.srdf --format srdf,curobo --tool-link flange --link "
+                 "finger:max-error=0.03,min-external=0.06,padding=0.005"));
   const json summary = json::parse(result.out);
   EXPECT_EQ(summary.at("links").at(0).at("options").at("max-error"), 0.06);
   const json& finger = summary.at("links").at(3);
@@ -301,76 +291,65 @@ TEST_F(RobotTest, OptionsOfOneLinkAndOfAnSrdfCount) {
 
   EXPECT_EQ(ignored(read_back("arm_1.curobo.yml")).count({"base", "finger"}), 1U);
   EXPECT_EQ(ignored(read_back("arm_1.curobo.yml")).size(), 3U);
-  EXPECT_NE(read("out/arm_1.srdf").find("group name=\"hand\""), std::string::npos);
-  EXPECT_NE(read("out/arm_1.curobo.yml").find("ee_link: flange"), std::string::npos)
-      << read("out/arm_1.curobo.yml");
+  EXPECT_TRUE(has(read("out/arm_1.srdf"), "group name=\"hand\""));
+  EXPECT_TRUE(has(read("out/arm_1.curobo.yml"), "ee_link: flange"));
   EXPECT_FALSE(by_link(read_back("arm_1.srdf")).empty());
 }
 
 TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
-  const auto refuse = [&](const std::vector<std::string>& more, const std::string& reason) {
-    expect_refusal(command(more), reason);
-  };
-  expect_refusal({"robot", "none.urdf", "-o", "out"}, "none.urdf");
-  expect_refusal({"robot", "arm.urdf", "-o", "out"}, "parts");
-  expect_refusal({"robot", "arm.urdf", "-o", "out", "--package", "parts=parts", "--max-error", "0"},
-                 "--max-error");
-  expect_refusal({"robot", "arm.urdf", "-o", "no/where", "--package", "parts=parts"},
-                 "no/where: no such folder");
-  expect_refusal({"robot", "arm.urdf", "-o", "lug.stl", "--package", "parts=parts"},
-                 "lug.stl: is not a folder");
+  const std::string cover = "robot arm.urdf --package parts=parts -o ";
   const std::string name(300, 'n');
-  write("long.urdf", "<robot name=\"r\"><link name=\"" + name +
-                         "\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision>"
-                         "</link></robot>");
-  for (const char* folder : {"out", "."}) {
-    expect_refusal({"robot", "long.urdf", "-o", folder, "--max-error", "0.001"},
-                   name + ".tree: cannot be written: the name is too long");
-  }
-  refuse({"--padding", "-1"}, "--padding: must be finite");
-  refuse({"--min-external", "nan"}, "--min-external: must be finite");
-  refuse({"--geometry", "both"}, "--geometry");
-  refuse({"--geometry", "visual", "--link", "finger:padding=1"}, "link 'finger': has options");
-  refuse({"--format", "urdf,sdf"}, "--format");
-  refuse({"--package", "parts"}, "--package: 'parts' is not NAME=DIR");
-  refuse({"--package", "parts=."}, "--package: parts is given twice");
-  refuse({"--link", "finger"}, "--link: 'finger' is not NAME:");
-  refuse({"--link", "thumb:max-error=1"}, "link 'thumb': the robot has no such link");
-  refuse({"--link", "flange:max-error=1"}, "link 'flange': has options and no geometry");
-  refuse({"--link", "finger:max-error=x"}, "--link finger: 'x' is not a number");
-  refuse({"--link", "finger:max-error=-1"}, "link 'finger' max error: must be positive");
-  refuse({"--link", "finger:max-error"}, "'max-error' is not NAME=VALUE");
-  refuse({"--link", "finger:radius=1"}, "'radius' is none of max-error");
-  refuse({"--link", "finger:padding=-1"}, "--link finger: 'padding=-1': must be at least 0");
-  refuse({"--link", "finger:padding=0,padding=0"}, "padding is given twice");
-  refuse({"--link", "finger:zones=none.json"}, "none.json");
-  refuse({"--tool-link", "thumb"}, "--tool-link: the robot has no link 'thumb'");
-  refuse({"--srdf", "lug.stl"}, "lug.stl");
+  const std::string box = "<collision><geometry><box size=\"300 200 100\"/></geometry></collision>";
+  write("long.urdf", "<robot name=\"r\"><link name=\"" + name + "\">" + box + "</link></robot>");
+  write("big.urdf", "<robot name=\"big\"><link name=\"base\">" + box + "</link></robot>");
   write("other.yml", "robot_cfg: 3\n");
-  refuse({"--curobo", "other.yml"}, "other.yml");
-  refuse({"--xrdf", "none.xrdf"}, "none.xrdf");
-  fs::remove(folder_ / "other.yml");
-  refuse({"--seconds", "1"}, "--seconds");
-  refuse({"--threads", "-1"}, "--threads");
-  refuse({"--seed", "-1"}, "--seed");
-  EXPECT_EQ(files(), (std::vector<std::string>{"arm.urdf", "long.urdf", "lug.stl", "parts"}));
-
-  // In millimetres.
-  write("big.urdf", R"(<robot name="big"><link name="base"><collision><geometry>
-    <box size="300 200 100"/></geometry></collision></link></robot>)");
-  expect_refusal({"robot", "big.urdf", "-o", "out"}, "millimetres");
-  EXPECT_FALSE(exists("out"));
+  write("r.srdf", "<robot name=\"r\"/>");
+  const std::vector<std::string> before = files();
+  expect_refusals(
+      {{"robot none.urdf -o out", "none.urdf"},
+       {"robot arm.urdf -o out", "parts"},
+       {"robot big.urdf -o out", "millimetres"},
+       {"robot long.urdf -o out --max-error 1", name + ".tree: cannot be written: the name is too"},
+       {cover + "no/where", "no/where: no such folder"},
+       {cover + "lug.stl", "lug.stl: is not a folder"},
+       {cover + "out --max-error 0", "--max-error"},
+       {cover + "out --max-error 20", "max error: 20 m is far more than any link is across"},
+       {cover + "out --padding -1", "--padding: must be finite"},
+       {cover + "out --min-external nan", "--min-external: must be finite"},
+       {cover + "out --geometry both", "--geometry"},
+       {cover + "out --geometry visual --link finger:padding=1", "link 'finger': has options"},
+       {cover + "out --format urdf,sdf", "--format"},
+       {cover + "out --format json,pairs --proofs none", "--format pairs: nothing is proved of"},
+       {cover + "out --proofs some", "--proofs"},
+       {cover + "out --package parts", "--package: 'parts' is not NAME=DIR"},
+       {cover + "out --package parts=.", "--package: parts is given twice"},
+       {cover + "out --link finger", "--link: 'finger' is not NAME:"},
+       {cover + "out --link bsae:max-error=1", "the robot has no such link; did you mean base?"},
+       {cover + "out --link flange:max-error=1", "link 'flange': has options and no geometry"},
+       {cover + "out --link finger:max-error=x", "--link finger: 'x' is not a number"},
+       {cover + "out --link finger:max-error=-1", "link 'finger' max error: must be positive"},
+       {cover + "out --link finger:max-error", "'max-error' is not NAME=VALUE"},
+       {cover + "out --link finger:radius=1", "'radius' is none of max-error"},
+       {cover + "out --link finger:padding=-1", "'padding=-1': must be at least 0"},
+       {cover + "out --link finger:padding=0,padding=0", "padding is given twice"},
+       {cover + "out --link finger:zones=none.json", "none.json"},
+       {cover + "out --tool-link thumb", "--tool-link: the robot has no link 'thumb'"},
+       {cover + "out --srdf lug.stl", "lug.stl"},
+       {cover + "out --curobo other.yml", "other.yml"},
+       {cover + "out --xrdf none.xrdf", "none.xrdf"},
+       {cover + "out --effort 0 --seconds 1", "--seconds"},
+       {cover + "out --threads -1", "--threads"},
+       {cover + "out --seed -1", "--seed"}});
+  EXPECT_EQ(files(), before);
 }
 
 TEST_F(RobotTest, NothingThatIsReadIsOverwritten) {
   fs::rename(folder_ / "arm.urdf", folder_ / "arm_1.spheres.urdf");
-  expect_refusal({"robot", "arm_1.spheres.urdf", "-o", ".", "--package", "parts=parts"},
+  expect_refusal("robot arm_1.spheres.urdf -o . --package parts=parts",
                  "arm_1.spheres.urdf: is named twice");
   EXPECT_EQ(read("arm_1.spheres.urdf"), kRobot);
-  const auto expect_kept = [&](const std::string& file, const std::vector<std::string>& more) {
-    std::vector<std::string> line = {"robot", "arm_1.spheres.urdf", "-o",
-                                     "out",   "--package",          "parts=parts"};
-    line.insert(line.end(), more.begin(), more.end());
+  const auto expect_kept = [&](const std::string& file, const Words& more) {
+    Words line = joined("robot arm_1.spheres.urdf -o out --package parts=parts", more);
     expect_refusal(line, file + ": is named twice");
   };
   expect_kept("poses.csv", {"--poses", "poses.csv", "--view", "poses.csv"});
@@ -379,6 +358,173 @@ TEST_F(RobotTest, NothingThatIsReadIsOverwritten) {
   expect_kept("./z.json", {"--link", "base:padding=0.01,zones=z.json", "--view", "./z.json"});
   fs::create_directory(folder_ / "out");
   expect_kept("out/arm_1.report.json", {"--view", "out/arm_1.report.json"});
+}
+
+class RobotFalseAlarmsTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("gantry.urdf", gantry("0"));
+  }
+
+  static Words command(const Words& more) {
+    return joined(
+        "robot gantry.urdf -o out --effort 0 --format json --max-error 0.1 --postures 2000", more);
+  }
+
+  json alarms() const { return read_json("out/gantry.report.json")["false_alarms"]; }
+};
+
+TEST_F(RobotFalseAlarmsTest, MeasuresAndNamesThePair) {
+  const Outcome result = expect_exit(0, command("--proofs none"));
+  EXPECT_TRUE(has(result.out, "false alarms: "));
+  EXPECT_TRUE(has(result.out, "block and tool: "));
+  const json found = alarms();
+  EXPECT_EQ(found["postures"], 2000);
+  EXPECT_EQ(found["free"], 2000);
+  EXPECT_EQ(found["proofs"], "none");
+  EXPECT_GT(found["share"], 0.05);
+  EXPECT_GT(found["share_upper_bound"], found["share"]);
+  ASSERT_EQ(found["pairs"].size(), 1U);
+  EXPECT_EQ(found["pairs"][0]["links"], (json{"block", "tool"}));
+  EXPECT_EQ(found["pairs"][0]["refused"], found["refused"]);
+  EXPECT_GT(found["pairs"][0]["median_gap"], 0.018);
+  EXPECT_FALSE(found.contains("goal"));
+}
+
+TEST_F(RobotFalseAlarmsTest, ProofsSpareThePair) {
+  const Outcome result = expect_exit(0, command("--json"));
+  const json found = json::parse(result.out)["false_alarms"];
+  EXPECT_EQ(found["proofs"], "boxes");
+  EXPECT_EQ(found["refused"], 0);
+  EXPECT_EQ(found["share_with_proofs"]["never"], 0.0);
+  EXPECT_GT(found["share_with_proofs"]["none"], 0.05);
+}
+
+TEST_F(RobotFalseAlarmsTest, ReachesAGoal) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
+  write("poses.csv", "turn, slide\n0, 0.3\n0.5, 0.4\n");
+  const Outcome result =
+      expect_exit(0, command("--proofs none --false-alarms 20% --poses poses.csv"));
+  EXPECT_TRUE(has(result.out, "goal 20.00 %: reached"));
+  const json report = read_json("out/gantry.report.json");
+  const json& found = report["false_alarms"];
+  EXPECT_EQ(found["postures"], 10000);  // of the verification
+  EXPECT_LE(found["share_upper_bound"], 0.2);
+  EXPECT_EQ(found["given"]["postures"], 2);
+  EXPECT_EQ(found["given"]["refused"], 0);
+  EXPECT_TRUE(found["goal"]["reached"]);
+  EXPECT_EQ(found["goal"]["sphere_count"], report["total"]["sphere_count"]);
+  EXPECT_EQ(found["goal"]["coarsest"]["max_error"], 0.1);
+  EXPECT_LT(found["goal"]["coarsest"]["sphere_count"], found["goal"]["sphere_count"]);
+  EXPECT_GT(found["goal"]["coarsest"]["share"], 0.2);
+  ASSERT_EQ(found["goal"]["links"].size(), 2U);
+  std::size_t spheres = 0;
+  for (const LinkSpheres& link :
+       read_robot_spheres(folder_ / "out/gantry.spheres.json").spheres.links) {
+    spheres += link.spheres.size();
+  }
+  EXPECT_EQ(found["goal"]["sphere_count"], spheres);
+  for (const json& link : report["links"]) {
+    if (link["sphere_count"] == 0) continue;
+    EXPECT_TRUE(link["certificate"]["covered"]);
+    EXPECT_LE(link["options"]["max-error"], 0.1);
+  }
+}
+
+TEST_F(RobotFalseAlarmsTest, AGoalThatIsNotShownFails) {
+  const Outcome result = expect_exit(1, command("--false-alarms 0.0001"));
+  EXPECT_TRUE(has(result.err, "false alarms"));
+  EXPECT_TRUE(has(result.out, "--postures"));
+  EXPECT_FALSE(alarms()["goal"]["reached"]);
+}
+
+TEST_F(RobotFalseAlarmsTest, RefusesBadInput) {
+  for (const char* share : {"0", "1", "100%", "-1%", "few", "1%%", "%", "nan"}) {
+    expect_refusal(command({"--false-alarms", share}), "share");
+  }
+  expect_refusals({{command("--proofs some"), "--proofs"},
+                   {command("--postures 0"), "--postures"},
+                   {command("--poses none.csv"), "none.csv"}});
+  write("narrow.csv", "0.1\n");
+  expect_refusal(command("--poses narrow.csv"), "line 1");
+  write("empty.csv", "# nothing\n");
+  expect_refusal(command("--poses empty.csv"), "empty.csv");
+  write("post.urdf",
+        R"(<robot name="post"><link name="post"><collision><geometry><box size="1 1 1"/></geometry>
+           </collision></link></robot>)");
+  expect_refusal("robot post.urdf -o out --false-alarms 1%", "no joint that moves");
+  EXPECT_FALSE(exists("out"));
+}
+
+// Commands on a robot whose URDF the program xacro makes: a stand-in for it on the PATH.
+
+class XacroCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    path_ = std::getenv("PATH");
+    write("xacro", "#!/bin/sh\nsed -n 's/^made: //p' \"$1\"\n");
+    fs::permissions(folder_ / "xacro", fs::perms::owner_all);
+    ::setenv("PATH", (folder_.string() + ":" + path_).c_str(), 1);
+    // All its links are in what xacro makes.
+    write("arm.urdf.xacro",
+          "<robot name=\"raw\"><xacro:arm/>\n"
+          "made: <robot name=\"arm\"><link name=\"base\"><collision><geometry>"
+          "<box size=\"1 0.01 0.01\"/></geometry></collision></link></robot>\n</robot>\n");
+  }
+  void TearDown() override {
+    ::setenv("PATH", path_.c_str(), 1);
+    CommandTest::TearDown();
+  }
+
+ private:
+  std::string path_;
+};
+
+TEST_F(XacroCommand, TakesItAsTheUrdf) {
+  const Outcome robot = expect_exit(0, "robot arm.urdf.xacro --max-error 0.2 --effort 0");
+  const std::string urdf = read("arm-spheres/arm.spheres.urdf");
+  EXPECT_TRUE(has(urdf, "<sphere radius"));
+  EXPECT_FALSE(has(urdf, "xacro"));
+  const Outcome info = expect_exit(0, "info arm.urdf.xacro");
+  EXPECT_TRUE(has(info.out, "arm"));
+  expect_exit(0, "view arm.urdf.xacro arm-spheres/arm.spheres.json -o arm.html");
+  expect_exit(0, "audit-robot arm.urdf.xacro arm-spheres/arm.spheres.urdf");
+}
+
+// cuRobo cannot read the other.
+TEST_F(XacroCommand, TheCuroboFileNamesTheUrdfThatIsWritten) {
+  if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
+  const Words cover = "robot arm.urdf.xacro --max-error 0.2 --effort 0";
+  const auto run_with = [&](const Words& more) {
+    Words line = cover;
+    line.insert(line.end(), more.begin(), more.end());
+    const Outcome outcome = expect_exit(0, line);
+    return outcome.err;
+  };
+  for (const Words& more : {Words{}, {"--format", "curobo,urdf"}}) {
+    EXPECT_FALSE(has(run_with(more), "cuRobo"));
+    const std::string file = read("arm-spheres/arm.curobo.yml");
+    EXPECT_TRUE(has(file, "urdf_path: arm-spheres/arm.spheres.urdf\n"));
+    EXPECT_TRUE(has(file, "asset_root_path: arm-spheres\n"));
+    EXPECT_TRUE(exists("arm-spheres/arm.spheres.urdf"));
+  }
+  EXPECT_TRUE(has(run_with("-o alone --format curobo"),
+                  "warning: urdf_path of the cuRobo file is arm.urdf.xacro, which cuRobo "
+                  "cannot read"));
+  EXPECT_TRUE(has(read("alone/arm.curobo.yml"), "urdf_path: arm.urdf.xacro\n"));
+  // A file that is kept names what it named.
+  write("mine.yml", read("alone/arm.curobo.yml"));
+  EXPECT_FALSE(has(run_with("-o kept --format curobo --curobo mine.yml"), "cuRobo"));
+}
+
+// Some managers of services ignore the ends of their children, which is inherited.
+TEST_F(XacroCommand, RunsWhereTheParentIgnoresTheEndsOfChildren) {
+  const Outcome outcome = finish(start_process(
+      "/usr/bin/env", {"--ignore-signal=CHLD", SPHERULE_COMMAND, "info", "arm.urdf.xacro"},
+      {.folder = folder_, .out = ".out", .error = ".err"}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
-#include "tests/cli/view_scene.h"
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace spherule {
 namespace {
@@ -18,9 +16,8 @@ TEST_F(ViewTest, PageHoldsAllFiles) {
   std::vector<std::array<double, 4>> row;
   for (int i = 0; i < 30; ++i) row.push_back({0.1 * i, 1, 0.5, 0.5});
   write_spheres("row.json", row);
-  ASSERT_EQ(run({"tree", "row.json", "-o", "row.tree"}).exit_code, 0);
-  const Outcome view = run({"view", "box.stl", "row.json", "row.tree", "-o", "page.html"});
-  ASSERT_EQ(view.exit_code, 0) << view.err;
+  expect_exit(0, "tree row.json -o row.tree");
+  const Outcome view = expect_exit(0, "view box.stl row.json row.tree -o page.html");
 
   const std::string page = read("page.html");
   const json items = scene_of(page).at("items");
@@ -36,16 +33,16 @@ TEST_F(ViewTest, PageHoldsAllFiles) {
   EXPECT_GT(levels.size(), 2u);
   // All parts were put in, with the licence of what is not ours.
   for (const char* mark : {"/*STYLE*/", "/*THREE*/", "/*SCRIPT*/", "/*SCENE*/", "<!--TITLE-->"}) {
-    EXPECT_EQ(page.find(mark), std::string::npos) << mark;
+    EXPECT_FALSE(has(page, mark)) << mark;
   }
-  EXPECT_NE(page.find("Copyright (c) 2010-2019 three.js authors"), std::string::npos);
+  EXPECT_TRUE(has(page, "Copyright (c) 2010-2019 three.js authors"));
   // Our own parts fetch nothing; of three.js only its loaders would, which are not called.
   const std::size_t three = page.find("\nthree.js, release");
   const std::size_t after = page.find("</script>", three);
   ASSERT_LT(three, after);
   const std::string own = page.substr(0, three) + page.substr(after);
   for (const char* mark : {"src=", "href=", "import", "url(", "fetch(", "XMLHttpRequest"}) {
-    EXPECT_EQ(own.find(mark), std::string::npos) << mark;
+    EXPECT_FALSE(has(own, mark)) << mark;
   }
 }
 
@@ -53,8 +50,7 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
   // Without external spheres what is inside is found by a flood: quick in a bar.
   write_box("box.stl", {4, 0.4, 0.2});
   write_spheres("two.json", {{1, 0.2, 0.1, 1.2}, {2, 0.2, 0.1, 1.2}});
-  const Outcome audit = run({"audit", "box.stl", "two.json", "--json"});
-  ASSERT_EQ(audit.exit_code, 1);
+  const Outcome audit = expect_exit(1, "audit box.stl two.json --json");
   const json certificate = json::parse(audit.out);
   ASSERT_GT(certificate.at("leaks").size(), 10u);
   // The corners at x = 4 are the furthest: sqrt(2^2 + 0.2^2 + 0.1^2) from a centre.
@@ -62,11 +58,11 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
   EXPECT_NEAR(certificate.at("leaks").at(0).at("depth").get<double>(), deepest, 1e-12);
 
   write("audit.json", audit.out);
-  ASSERT_EQ(run({"view", "box.stl", "two.json", "audit.json", "-o", "page.html"}).exit_code, 0);
+  expect_exit(0, "view box.stl two.json audit.json -o page.html");
   const json scene = scene_of(read("page.html"));
   const json leaks = scene.at("items").at(2);
   EXPECT_EQ(leaks.at("kind"), "leaks");
-  EXPECT_NE(leaks.at("facts").get<std::string>().find("proved"), std::string::npos);
+  EXPECT_TRUE(has(leaks.at("facts").get<std::string>(), "proved"));
   const auto numbers = floats_of(leaks.at("parts").at(0).at("levels").at(0));
   ASSERT_EQ(numbers.size(), 4 * (certificate.at("leaks").size() + 1));
   EXPECT_NEAR(numbers[3], deepest, 0.01);
@@ -87,21 +83,19 @@ TEST_F(ViewTest, LeaksOfAnAudit) {
   }
   // What covers has none, and says so.
   write_spheres("ball.json", {{2, 0.2, 0.1, 2.5}});
-  const Outcome covered = run({"audit", "box.stl", "ball.json", "--json"});
-  ASSERT_EQ(covered.exit_code, 0);
+  const Outcome covered = expect_exit(0, "audit box.stl ball.json --json");
   EXPECT_FALSE(json::parse(covered.out).contains("leaks"));
   write("covered.json", covered.out);
-  ASSERT_EQ(run({"view", "box.stl", "covered.json", "-o", "page.html"}).exit_code, 0);
+  expect_exit(0, "view box.stl covered.json -o page.html");
   EXPECT_EQ(scene_of(read("page.html")).at("items").at(1).at("facts"), "covered (proved)");
 }
 
 TEST_F(ViewTest, ReportHoldsExternalSpheres) {
   write_box("box.stl", {4, 2, 1});
-  ASSERT_EQ(run({"fit", "box.stl", "--max-error", "0.5", "--min-external", "3", "--effort", "0",
-                 "-o", "box.json", "--report", "report.json", "--external-spheres"})
-                .exit_code,
-            0);
-  ASSERT_EQ(run({"view", "box.stl", "box.json", "report.json", "-o", "page.html"}).exit_code, 0);
+  expect_exit(0,
+              "fit box.stl --max-error 0.5 --min-external 3 --effort 0 -o box.json --report "
+              "report.json --external-spheres");
+  expect_exit(0, "view box.stl box.json report.json -o page.html");
   const json items = scene_of(read("page.html")).at("items");
   ASSERT_EQ(items.size(), 3u);
   EXPECT_EQ(items[2].at("kind"), "external");
@@ -114,25 +108,25 @@ TEST_F(ViewTest, ReportHoldsExternalSpheres) {
 TEST_F(ViewTest, NamesCannotBreakThePage) {
   const std::string name = "a<b>&'\"<script>.json";
   write_spheres(name, {{0, 0, 0, 1}});
-  ASSERT_EQ(run({"view", name, "-o", "page.html"}).exit_code, 0);
+  expect_exit(0, {"view", name, "-o", "page.html"});
   const std::string page = read("page.html");
   EXPECT_EQ(scene_of(page).at("items").at(0).at("name"), name);
-  EXPECT_NE(page.find("<title>a&lt;b&gt;&amp;"), std::string::npos);
+  EXPECT_TRUE(has(page, "<title>a&lt;b&gt;&amp;"));
 }
 
 TEST_F(ViewTest, BadInput) {
   write_spheres("none.json", {});
   write("text.txt", "hello");
-  expect_refusal({"view", "none.json", "-o", "page.html"}, "nothing to show");
-  expect_refusal({"view", "text.txt", "-o", "page.html"}, "text.txt: ");
-  expect_refusal({"info", "text.txt"}, "text.txt: ");
+  expect_refusals({{"view none.json -o page.html", "nothing to show"},
+                   {"view text.txt -o page.html", "text.txt: "},
+                   {"info text.txt", "text.txt: "}});
   write("audit.json", R"({"deepest_leak": "here", "covered": false, "uncovered_depth": 3})");
-  expect_refusal({"view", "audit.json", "-o", "page.html"}, "audit.json: ");
+  expect_refusal("view audit.json -o page.html", "audit.json: ");
   write("report.json", R"({"format": "spherule-report"})");
-  expect_refusal({"view", "report.json", "-o", "page.html"}, "report.json: ");
+  expect_refusal("view report.json -o page.html", "report.json: ");
   write("twice.json", R"({"format": "spherule-report", "links": [], "links": []})");
-  expect_refusal({"view", "twice.json", "-o", "page.html"}, "the key \"links\" appears twice");
-  expect_refusal({"view", "none.json", "-o", "none.json"}, "named twice");
+  expect_refusal("view twice.json -o page.html", "the key \"links\" appears twice");
+  expect_refusal("view none.json -o none.json", "named twice");
   EXPECT_FALSE(exists("page.html"));
 }
 

@@ -23,6 +23,24 @@ inline constexpr const char* kSlider = R"(<?xml version="1.0"?>
 </robot>
 )";
 
+// A URDF: a tool that slides beside a block, from `lower` to 0.5, and turns. The two are 0.02 m
+// apart where the slide stands at zero, so that they never touch if it does not go below -0.02.
+inline std::string gantry(const std::string& lower) {
+  return R"(<?xml version="1.0"?>
+<robot name="gantry">
+  <link name="block"><collision><geometry><box size="0.3 0.3 0.3"/></geometry></collision></link>
+  <link name="carriage"/>
+  <link name="tool"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="slide" type="prismatic"><parent link="block"/><child link="carriage"/>
+    <origin xyz="0.22 0 0"/><axis xyz="1 0 0"/>
+    <limit lower=")" +
+         lower + R"(" upper="0.5" effort="1" velocity="1"/></joint>
+  <joint name="turn" type="revolute"><parent link="carriage"/><child link="tool"/>
+    <axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+)";
+}
+
 // A wall of a millimetre at x = 0, and what else is given.
 inline std::string wall_and(const std::string& keys) {
   return R"({"format": "spherule-scene", "version": 1, "obstacles": [
@@ -40,18 +58,11 @@ class CheckTest : public CommandTest {
     write("path.csv", "-1 0\n1 0\n");
   }
 
-  std::vector<std::string> command(const std::vector<std::string>& more) const {
-    std::vector<std::string> line = {"check",    "slider.urdf", "cell.json",
-                                     "path.csv", "--spheres",   "slider.json"};
-    line.insert(line.end(), more.begin(), more.end());
-    return line;
+  Words command(const Words& more) const {
+    return joined("check slider.urdf cell.json path.csv --spheres slider.json", more);
   }
-  nlohmann::json checked(int exit_code, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> line = command(more);
-    line.push_back("--json");
-    const Outcome outcome = run(line);
-    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
-    return nlohmann::json::parse(outcome.out);
+  nlohmann::json checked(int exit_code, const Words& more = {}) {
+    return nlohmann::json::parse(expect_exit(exit_code, joined(command(more), "--json")).out);
   }
 };
 
