@@ -4,8 +4,6 @@ find_package(GTest REQUIRED)
 include(GoogleTest)
 
 # A test program of SOURCES in tests/FOLDER/. Each test case becomes a ctest entry of its own.
-# Where SPHERULE_PRECOMPILE joins them, one with local names that another has too stands in a namespace of
-# its own, named after the file.
 # Cases of a COST start before those of less, so that no long one is left to run alone.
 # Where SPHERULE_MODELS names a folder of real models (environment), tests use those too.
 function(spherule_test name)

@@ -6,6 +6,7 @@
 #include "cli/text/json.h"
 #include "geometry/mesh_report.h"
 #include "simplifier/cover_breakdown.h"
+#include "simplifier/option_record.h"
 #include "simplifier/simplify.h"
 
 #include <optional>

@@ -55,8 +55,11 @@ namespace spherule {
 namespace internal {
 namespace {
 
-Eigen::Vector3d vector(const gp_Pnt& p) {
+Eigen::Vector3d vector(const gp_XYZ& p) {
   return {p.X(), p.Y(), p.Z()};
+}
+Eigen::Vector3d vector(const gp_Pnt& p) {
+  return vector(p.XYZ());
 }
 
 std::string kind_of(const TopoDS_Face& face) {
@@ -255,12 +258,6 @@ namespace {
 constexpr Interval kEndless{-std::numeric_limits<double>::infinity(),
                             std::numeric_limits<double>::infinity()};
 
-Eigen::Vector3d vector(const gp_XYZ& p) {
-  return {p.X(), p.Y(), p.Z()};
-}
-Eigen::Vector3d vector(const gp_Pnt& p) {
-  return vector(p.XYZ());
-}
 Eigen::Vector3d vector(const gp_Dir& d) {
   return vector(d.XYZ());
 }

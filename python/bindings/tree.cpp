@@ -5,9 +5,9 @@
 #include "python/bindings/support.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
-#include "spheretree/internal/file_content.h"
 #include "spheretree/level_tree.h"
 #include "spheretree/sphere_tree.h"
+#include "spheretree/tree_bytes.h"
 #include "spheretree/tree_file.h"
 
 #include <pybind11/stl.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/checkers/fcl_solid.h"
+#include "tests/support/fcl_solid.h"
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
 #include "spheretree/sphere_tree.h"

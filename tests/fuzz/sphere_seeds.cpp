@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/sphere_file.h"
+#include "io/sphere_text.h"
 #include "simplifier/types/zones.h"
 #include "spheretree/build.h"
-#include "spheretree/internal/file_content.h"
+#include "spheretree/tree_bytes.h"
 #include "tests/fuzz/fuzz_seeds.h"
 #include "tests/fuzz/sealed_content.h"
 

@@ -4,7 +4,7 @@
 #include "io/length_unit.h"
 #include "io/mesh_io.h"
 #include "io/polygon_triangles.h"
-#include "io/weld_within.h"
+#include "io/placement.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/models.h"

@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"
-#include "io/scene_budget.h"
+#include "io/placement.h"
 #include "tests/io/read_files.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_files.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/sphere_file.h"
 
-#include "spheretree/internal/file_content.h"
+#include "io/sphere_text.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/temporary_folder.h"
 

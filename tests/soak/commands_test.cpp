@@ -3,7 +3,7 @@
 // one, whole. What C libraries take by malloc() does not run out.
 #include "base/error.h"
 #include "base/files.h"
-#include "bench/scenes/shapes.h"
+#include "tests/support/shapes.h"
 #include "io/mesh_io.h"
 #include "io/sphere_file.h"
 #include "spheretree/build.h"

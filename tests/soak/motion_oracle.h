@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tests/collide/exact_motion.h"
+#include "tests/support/exact/poses.h"
 #include "tests/soak/random_scene.h"
 
 #include <cmath>

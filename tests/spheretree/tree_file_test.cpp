@@ -3,7 +3,7 @@
 
 #include "base/crc64.h"
 #include "spheretree/build.h"
-#include "spheretree/internal/file_content.h"
+#include "spheretree/tree_bytes.h"
 #include "tests/support/exact/trees.h"
 #include "tests/support/hash.h"
 #include "tests/support/random_scene.h"
