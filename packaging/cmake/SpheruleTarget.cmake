@@ -3,6 +3,9 @@
 # model, and how a library is installed.
 include(GNUInstallDirs)
 include(SpherulePkgConfig)
+if(SPHERULE_PRECOMPILE)
+  include(SpherulePrecompiled)
+endif()
 
 # Users write <spherule/geometry/sphere.h>. In the build tree this link leads there; installed, the
 # headers stand under include/spherule/.
@@ -30,6 +33,9 @@ function(spherule_compile_settings target kind)
     target_link_options(${target} PRIVATE LINKER:--as-needed)
   endif()
   spherule_program_options(${target} ${kind})
+  if(SPHERULE_PRECOMPILE AND NOT "${kind}" STREQUAL "binding")
+    spherule_precompile(${target} ${kind})
+  endif()
 endfunction()
 
 # A shared library exports what exports.map.in says, takes its own functions rather than a program's
