@@ -281,10 +281,6 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
   write_box("part.stl", {2, 0.1, 0.1});
   expect_progress("fit part.stl -o part.json --max-error 2 --effort 2");
   if (!test::kSanitized) expect_progress("audit part.stl part.json");
-#ifdef SPHERULE_HAS_BASELINES
-  if (!test::kSanitized) expect_progress("baseline hull part.stl -o hull.obj");
-  expect_progress("baseline octree part.stl -o octree.json --depth 3");
-#endif
 #ifdef SPHERULE_HAS_ROBOT
   write("robot.urdf", R"(<robot name="robot"><link name="hand">
     <collision><geometry><box size="0.02 0.001 0.001"/></geometry></collision></link></robot>)");

@@ -152,10 +152,6 @@ const std::vector<Command> kCommands = {
      {"robot", "in/bars.urdf", "-o", "out", "--max-error", "0.03", "--postures", "100", "--effort",
       "0", "--format", "urdf,srdf,curobo,xrdf,foam,json,tree,pairs"}},
     {"view", {"view", "in/bar.stl", "in/bar.json", "-o", "out/bar.html"}},
-    {"baseline hull", {"baseline", "hull", "in/bar.stl", "-o", "out/hull.ply"}},
-    {"baseline octree",
-     {"baseline", "octree", "in/bar.stl", "-o", "out/bar.json", "--tree-file", "out/bar.tree",
-      "--max-error", "12", "--conservative"}},
     {"completion", {"completion", "bash", "-o", "out/spherule"}},
     {"manual", {"manual", "-o", "out"}}};
 
