@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How fast is a collision check of the paper's work cell, engine by engine, and is the answer
 // right? See bench/README.md for the protocol.
-#include "bench/fit_parts.h"
-#include "bench/measure.h"
-#include "bench/methods.h"
-#include "bench/oracle.h"
+#include "bench/checkers/workload.h"
 #include "bench/report.h"
+#include "bench/studies/fit_parts.h"
+#include "bench/studies/measure.h"
 #include "tests/support/program.h"
 #ifdef SPHERULE_BENCH_STUDIES
-#include "bench/placed_cell.h"
-#include "bench/real_models.h"
 #include "bench/studies/study.h"
 #endif
 #include "base/error.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/real_models.h"
-
+#include "bench/report.h"
 #include "io/mesh_io.h"
 
 #include <Eigen/Geometry>

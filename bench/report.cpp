@@ -2,11 +2,16 @@
 #include "bench/report.h"
 
 #include "base/files.h"
-#include "bench/methods.h"
+#include "bench/checkers/bullet_sphere_checker.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/flat_scan_checker.h"
+#include "bench/checkers/tree_checker.h"
+#include "bench/studies/measure.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -167,6 +172,100 @@ void write_results(const std::vector<WorkloadResult>& results,
     json["workloads"].push_back(to_json(result));
   }
   write_file_atomically(folder / "results.json", json.dump(1) + "\n");
+}
+
+std::vector<Method> make_methods(const Workload& workload) {
+  const std::size_t triangles = triangle_count(workload);
+  const std::size_t spheres = sphere_count(workload);
+  std::size_t triangles_and_spheres = 0;
+  for (const Body& body : workload.bodies) triangles_and_spheres += body.part.mesh.triangles.size();
+  for (const Obstacle& obstacle : workload.obstacles) {
+    triangles_and_spheres += obstacle.part.tree->spheres().size();
+  }
+  std::vector<Method> methods;
+  using Setting = FclMeshSetting;
+  const auto is_plain = [](const Setting& setting) {
+    return setting.precision == Setting::Precision::kDouble &&
+           setting.front == Setting::Front::kBoxes;
+  };
+  for (const Setting& setting : all_fcl_mesh_settings()) {
+    const bool rss = setting.volume == Setting::Volume::kObbRss;
+    const std::string words = to_string(setting);
+    const std::string name =
+        is_plain(setting) ? (rss ? kUsualFcl : "fcl-mesh-obb") : "fcl-mesh " + words;
+    methods.push_back({name, words, make_fcl_mesh_checker(workload, setting), triangles, false});
+  }
+  methods.push_back({"fcl-spheres", "Sphere shapes, manager against manager",
+                     make_fcl_sphere_checker(workload), spheres, true});
+#if defined(SPHERULE_BENCH_BULLET)
+  methods.push_back({"bullet-pair-test", "compounds of spheres, contactPairTest for each pair",
+                     make_bullet_sphere_checker(workload, BulletQuery::kContactPairTest), spheres,
+                     false});
+  methods.push_back({"bullet-trees", "their dynamic AABB trees walked to the first contact",
+                     make_bullet_sphere_checker(workload, BulletQuery::kTrees), spheres, false});
+#endif
+  methods.push_back({"brute-force-spheres", "all pairs, single precision, widest vectors",
+                     make_flat_scan_checker(workload, FlatScan::kAllPairs), spheres, true});
+  methods.push_back({"flat-scan-spheres", "the same behind a sphere around each body",
+                     make_flat_scan_checker(workload, FlatScan::kSpheresInFront), spheres, false});
+  methods.push_back({"spherule-single", "sphere trees, one configuration a call",
+                     make_tree_checker(workload, TreeMode::kSingle), spheres, false});
+  methods.push_back({"spherule-batch", "sphere trees, many configurations a call",
+                     make_tree_checker(workload, TreeMode::kBatch), spheres, false});
+  methods.push_back({"spherule-confirmed", "the first, contacts confirmed on the triangles",
+                     make_tree_checker(workload, TreeMode::kConfirmed), spheres, false});
+  methods.push_back({"spherule-mesh", "meshes of robot and torch, spheres of the rest",
+                     make_tree_checker(workload, TreeMode::kMeshes), triangles_and_spheres, false});
+  if (best_instruction_set() == InstructionSet::kAvx512) {
+    methods.push_back({"spherule-batch-avx2", "many configurations a call, without AVX-512",
+                       make_tree_checker(workload, TreeMode::kBatch, InstructionSet::kAvx2),
+                       spheres, false});
+  }
+  return methods;
+}
+
+namespace {
+
+bool is_free_at_many(const RobotChecker& checker, RobotChecker::Scratch& scratch,
+                     const ArmPositions& from, const ArmPositions& to) {
+  constexpr int kSteps = 10000;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double t = static_cast<double>(step) / kSteps;
+    ArmPositions at;
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = (1.0 - t) * from[i] + t * to[i];
+    if (!checker.check_config(at, scratch)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+EdgeMeasurement measure_edges(const Workload& workload) {
+  const RobotChecker checker = make_robot_checker(workload);
+  RobotChecker::Scratch scratch(checker);
+  const std::vector<ArmPositions>& program = workload.program;
+  checker.check_edge(program[0], program[1], scratch);  // warms the scratch up
+  const double cost = clock_cost();
+  EdgeMeasurement result;
+  std::vector<double> times;
+  for (std::size_t i = 0; i + 1 < program.size(); ++i) {
+    const auto start = Clock::now();
+    const EdgeResult edge = checker.check_edge(program[i], program[i + 1], scratch);
+    times.push_back(std::max(0.0, nanoseconds(Clock::now() - start) - cost));
+    if (edge.verdict == Verdict::kFree) {
+      ++result.free;
+    } else if (edge.verdict == Verdict::kCollision) {
+      ++result.collision;
+    } else {
+      ++result.unknown;
+      if (is_free_at_many(checker, scratch, program[i], program[i + 1])) ++result.unknown_but_free;
+    }
+  }
+  std::sort(times.begin(), times.end());
+  result.median_ns = quantile(times, 0.5);
+  result.p95_ns = quantile(times, 0.95);
+  result.p99_ns = quantile(times, 0.99);
+  return result;
 }
 
 }  // namespace spherule

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
-#include "bench/baseline/internal/sampling_checks.h"
+#include "bench/baseline/mesh_probe.h"
 #include "geometry/triangle_mesh.h"
 
 #include <algorithm>

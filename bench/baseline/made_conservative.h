@@ -1,11 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Spheres of any method, grown until they cover.
+// Which cells of space a method takes.
 //
 // @code{.cpp}
 // #include <spherule/bench/baseline/made_conservative.h>
+// #include <spherule/bench/baseline/voxelisation.h>
 // #include <cassert>
+//
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const auto filling = spherule::Filling::kSurface;
+// const auto voxels = spherule::voxelise(tetrahedron, {.step = 0.1, .filling = filling});
+// assert(voxels.surface > 0 && voxels.inside == 0);
+// @endcode
+
+#include "base/error.h"
+#include "base/rounding.h"
+#include "geometry/mesh_distance.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
+#include "simplifier/simplify.h"
+#include "simplifier/solid/clearance.h"
+#include "simplifier/stage2/cover_problem.h"
+#include "simplifier/stage2/solid_cells.h"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace spherule {
+
+// Which cells of space a method takes.
+enum class Filling {
+  kSolid,   // those that the surface intersects and those inside
+  kSurface  // those that the surface intersects
+};
+
+}  // namespace spherule
+
+// Spheres of any method, grown until they cover.
+//
+// @code{.cpp}
 //
 // const spherule::TriangleMesh bar{{{0, 0, 0}, {1, 0, 0}, {0, 0.02, 0}, {0, 0, 0.02}},
 //                                  {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
@@ -13,13 +51,6 @@
 // const auto grown = spherule::made_conservative(bar, spheres);
 // assert(grown.certificate.covered && grown.inflation > 0.05 && grown.inflation < 0.06);
 // @endcode
-
-#include "geometry/sphere.h"
-#include "geometry/triangle_mesh.h"
-#include "simplifier/simplify.h"
-
-#include <span>
-#include <vector>
 
 namespace spherule {
 
@@ -43,3 +74,41 @@ ConservativeSpheres made_conservative(const TriangleMesh& mesh, std::span<const 
                                       const Progress& progress = {});
 
 }  // namespace spherule
+
+namespace spherule::internal {
+
+// The simplified solid S as stage 2 methods from this library see it.
+struct SimplifiedSolid {
+  // Throws Error for a mesh, options and an E that cover() would refuse, and for zones of an E of
+  // their own in the name of the method.
+  SimplifiedSolid(const TriangleMesh& mesh, const ExternalSpheres& external,
+                  const CoverOptions& options, const std::string& method);
+  SimplifiedSolid(const SimplifiedSolid&) = delete;
+  SimplifiedSolid& operator=(const SimplifiedSolid&) = delete;
+
+  // Points of S, up to rounding, that a cover is made for: one on the boundary in every cell that
+  // this crosses, one in the middle of every other, and, since they stick out first, corners and
+  // points of the edges of the mesh where they lie on the boundary. (Ridges where external spheres
+  // meet elsewhere are left to the proof: what leaks there becomes a sample, too.) At least one.
+  std::vector<Eigen::Vector3d> samples(const TriangleMesh& mesh) const;
+
+  double max_error;  // E
+  MeshDistance distance;
+  Clearance clearance;
+  LocalError everywhere;  // E
+  SolidCells cells;
+};
+
+// Edge of a cube whose circumscribed sphere, with its margins for rounding, is nowhere further than
+// `max_error` from any point of the cube.
+inline double edge_for_error(double max_error) {
+  return max_error * (0.5773502691896257 * (1.0 - 0x1p-10));
+}
+
+inline void check_padding(double padding) {
+  if (!(padding >= 0.0 && padding <= kMaxCoordinate)) {
+    throw Error("padding", "must be finite and not negative");
+  }
+}
+
+}  // namespace spherule::internal

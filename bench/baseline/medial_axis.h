@@ -15,7 +15,7 @@
 // assert(!made.spheres.empty() && made.spheres.size() <= 8 && made.protrusion > 0.0);
 // @endcode
 
-#include "bench/baseline/sphere_levels.h"
+#include "bench/baseline/octree_spheres.h"
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
 

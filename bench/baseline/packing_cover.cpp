@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/baseline/packing_cover.h"
 
+#include "base/error.h"
+#include "base/rounding.h"
 #include "base/threads.h"
-#include "bench/baseline/internal/simplified_solid.h"
+#include "bench/baseline/made_conservative.h"
 #include "simplifier/stage2/cover_moves.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -70,6 +73,39 @@ SphereCover packing_cover(const TriangleMesh& mesh, const ExternalSpheres& exter
   const internal::CoverageProof remaining = internal::remaining_error(
       solid.clearance, solid.distance, spheres.spheres(), options.max_error);
   internal::inflate(result, spheres.spheres(), std::min(limit, remaining.upper), options);
+  return result;
+}
+
+SpherePacking pack_spheres(const TriangleMesh& mesh, const SpherePackingOptions& options) {
+  internal::check_max_error(options.max_error);
+  if (!(options.closed_below >= 0.0 && options.closed_below <= kMaxCoordinate)) {
+    throw Error("closed below", "must be finite and not negative");
+  }
+  ExternalOptions external;
+  external.min_external_diameter =
+      options.closed_below > 0.0 ? options.closed_below : options.max_error / 2.0;
+  // Finer than this only the slack of closing would be smaller (ExternalOptions::grid_step).
+  external.grid_step = external.min_external_diameter / 4.0;
+  external.tightness = ExternalOptions::kNoTightness;
+  external.padding = options.padding;
+  external.threads = options.threads;
+  external.progress = options.progress;
+  SpherePacking result;
+  result.solid = place_external_spheres(mesh, external);
+  CoverOptions loop;
+  loop.method = CoverMethod::kPaper;
+  loop.max_error = options.max_error;
+  loop.min_internal_diameter = options.seed_diameter;
+  loop.seed = options.seed;
+  loop.history = options.history;
+  loop.threads = options.threads;
+  loop.progress = options.progress;
+  SphereCover packed = cover(mesh, result.solid, loop);
+  result.spheres = std::move(packed.spheres_before_inflation);
+  result.inflated = std::move(packed.spheres);
+  result.error = packed.inflation;
+  result.history = std::move(packed.history);
+  result.seeds_rejected = packed.seeds_rejected;
   return result;
 }
 

@@ -13,7 +13,7 @@
 // assert(voxels.spheres.size() == voxels.surface + voxels.inside && voxels.step < 0.2);
 // @endcode
 
-#include "bench/baseline/filling.h"
+#include "bench/baseline/made_conservative.h"
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
 

@@ -3,9 +3,7 @@
 // triangles, external spheres, spheres, seconds of both stages and of the certificate, and whether
 // the certificate holds.
 
-#include "bench/scenes/robot.h"
-#include "bench/scenes/torch.h"
-#include "bench/scenes/workpiece.h"
+#include "bench/scenes/work_cell_parts.h"
 #include "simplifier/simplify.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"

@@ -5,8 +5,8 @@
 // Counters: time a configuration (of the clock on the wall), the share that collides, spheres.
 
 #include "bench/checkers/tree_checker.h"
+#include "bench/checkers/workload.h"
 #include "bench/scenes/program.h"
-#include "bench/workload.h"
 #include "geometry/enclosing_sphere.h"
 #include "spheretree/build.h"
 

@@ -2,7 +2,7 @@
 #include "bench/checkers/bullet_sphere_checker.h"
 
 #include "bench/checkers/bullet_pair_test.h"
-#include "bench/checkers/scene_reach.h"
+#include "bench/checkers/tree_checker.h"
 
 #include <bullet/btBulletCollisionCommon.h>
 #include <cmath>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/workload.h"
+#include "bench/checkers/workload.h"
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/collision_geometry.h>
 
 #include <memory>
 #include <string>
@@ -28,5 +31,30 @@ std::string to_string(const FclMeshSetting& setting);
 std::vector<FclMeshSetting> all_fcl_mesh_settings();
 std::unique_ptr<Checker> make_fcl_mesh_checker(const Workload& workload,
                                                const FclMeshSetting& setting);
+
+// FCL's queries of two meshes, both BVHModel<Volume>: until the first contact, and the distance
+// without its points (FCL has none for OBB). In double precision Debian's library answers
+// fcl::collide() and fcl::distance(). It has no single precision: fcl_meshes.cpp instantiates the
+// functions that those two pick for meshes, and not those for every other pair of FCL's shapes.
+template <class Volume>
+bool fcl_meshes_touch(const fcl::CollisionGeometry<typename Volume::S>& a,
+                      const fcl::Transform3<typename Volume::S>& world_from_a,
+                      const fcl::CollisionGeometry<typename Volume::S>& b,
+                      const fcl::Transform3<typename Volume::S>& world_from_b);
+template <class Volume>
+typename Volume::S fcl_mesh_distance(const fcl::CollisionGeometry<typename Volume::S>& a,
+                                     const fcl::Transform3<typename Volume::S>& world_from_a,
+                                     const fcl::CollisionGeometry<typename Volume::S>& b,
+                                     const fcl::Transform3<typename Volume::S>& world_from_b);
+
+}  // namespace spherule
+
+extern template class fcl::DynamicAABBTreeCollisionManager<float>;
+
+namespace spherule {
+
+// The same spheres as FCL shapes: one DynamicAABBTreeCollisionManager holds the moving spheres
+// (moved and updated for every configuration), one each obstacle's; manager against manager.
+std::unique_ptr<Checker> make_fcl_sphere_checker(const Workload& workload);
 
 }  // namespace spherule

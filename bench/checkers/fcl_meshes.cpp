@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/fcl_meshes.h"
+#include "bench/checkers/fcl_mesh_checker.h"
 
 #include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "bench/checkers/flat_scan/kernel.h"
-#include "bench/checkers/scene_reach.h"
+#include "bench/checkers/tree_checker.h"
 #include "tests/support/turn_between.h"
 
 #include <algorithm>

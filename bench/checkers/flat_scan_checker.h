@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/workload.h"
+#include "bench/checkers/workload.h"
 #include "collide/search/instruction_set.h"
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/paper/sphere_methods.h"
+#include "bench/paper/representations.h"
 #include "geometry/triangle_mesh.h"
 
 #include <cstddef>

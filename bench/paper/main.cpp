@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table and the figures of the paper, made again. See bench/README.md.
 #include "base/error.h"
-#include "bench/fit_parts.h"
 #include "bench/paper/pictures.h"
 #include "bench/paper/report.h"
+#include "bench/studies/fit_parts.h"
 #include "tests/support/program.h"
 
 #include <cstdio>

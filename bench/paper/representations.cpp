@@ -5,16 +5,28 @@
 #include "bench/baseline/convex_decomposition.h"
 #include "bench/baseline/convex_hull.h"
 #include "bench/baseline/decimation.h"
-#include "bench/baseline/sphere_packing.h"
+#include "bench/baseline/level_set_packing.h"
+#include "bench/baseline/medial_axis.h"
+#include "bench/baseline/medial_cover.h"
+#include "bench/baseline/octree_spheres.h"
+#include "bench/baseline/packing_cover.h"
 #include "bench/baseline/voxelisation.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/checkers/tree_checker.h"
-#include "bench/paper/fcl_convex_checker.h"
 #include "bench/paper/figures.h"
+#include "geometry/mesh_report.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
+#include "tests/support/fcl_models.h"
+#include "tests/support/mesh_facts.h"
+#include "tests/support/solids.h"
+
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <span>
 #include <utility>
@@ -121,6 +133,161 @@ std::vector<Representation> make_representations(const Workload& workload) {
   rows.add({"all-simplified", count(sphere_count(workload), "spheres"), true,
             make_tree_checker(workload, TreeMode::kSingle), PaperRow{"-", 2289, 7.0}});
   return rows.take();
+}
+
+namespace {
+
+constexpr double kAfterStage1 = 4.0;  // D over E
+constexpr double kAsIs = 1.0;
+constexpr int kEffort = 6;
+// Hubbard's method is told a count: that of spheres of radius E side by side on the surface, at
+// most.
+constexpr double kMostSpheres = 5000.0;
+constexpr double kLevelSetStep = 0.25;     // of E
+constexpr double kCoverPointsApart = 0.2;  // of E
+constexpr double kFewestCoverPoints = 10000.0;
+constexpr double kMostCoverPoints = 30000.0;
+
+std::vector<Sphere> bounding(const TriangleMesh& mesh, double error, CoverMethod method,
+                             double diameter_over_error) {
+  return simplify(mesh, {.max_error = error,
+                         .min_external_diameter = diameter_over_error * error,
+                         .method = method,
+                         .effort = kEffort})
+      .cover.spheres;
+}
+
+SphereMethod bounding_method(const char* name, CoverMethod method, double diameter_over_error) {
+  return {name, [=](const TriangleMesh& mesh, double error) {
+            return bounding(mesh, error, method, diameter_over_error);
+          }};
+}
+
+double area_of(const TriangleMesh& mesh) {
+  return mesh_report(mesh, {.self_intersections = false}).area;
+}
+
+// Between the points that have to be covered nothing is promised: many enough make it little.
+std::vector<Sphere> medial(const TriangleMesh& mesh, double error) {
+  MedialAxisOptions options{.max_protrusion = error};
+  const double apart = kCoverPointsApart * error;
+  options.sampling.cover_points = static_cast<std::size_t>(
+      std::clamp(area_of(mesh) / (apart * apart), kFewestCoverPoints, kMostCoverPoints));
+  return medial_axis(mesh, options).spheres;
+}
+
+std::vector<Sphere> hubbard(const TriangleMesh& mesh, double error) {
+  const double spheres = std::clamp(area_of(mesh) / (error * error), 2.0, kMostSpheres);
+  HubbardOptions options;
+  options.counts = {static_cast<std::size_t>(spheres)};
+  options.sites = std::max(options.sites, 2 * options.counts.front());
+  return hubbard_spheres(mesh, options).levels.back();
+}
+
+}  // namespace
+
+std::vector<SphereMethod> sphere_methods() {
+  return {
+      {"packing", [](const TriangleMesh& mesh,
+                     double error) { return pack_spheres(mesh, {.max_error = error}).inflated; }},
+      {"openvdb",
+       [](const TriangleMesh& mesh, double error) {
+         return level_set_packing(mesh, {.step = kLevelSetStep * error});
+       }},
+      {"voxels", [](const TriangleMesh& mesh,
+                    double error) { return voxelise(mesh, {.max_error = error}).spheres; }},
+      {"octree",
+       [](const TriangleMesh& mesh, double error) {
+         const SphereTree tree = octree_spheres(mesh, {.max_error = error}).tree;
+         return std::vector<Sphere>(tree.spheres().begin(), tree.spheres().end());
+       }},
+      {"hubbard", hubbard},
+      {"medial-axis", medial},
+      bounding_method("paper", CoverMethod::kPaper, kAfterStage1),
+      bounding_method("cover-as-is", CoverMethod::kCover, kAsIs),
+      bounding_method("cover", CoverMethod::kCover, kAfterStage1),
+  };
+}
+
+namespace {
+
+using Model = FclModel<fcl::OBBRSS<double>>;
+using Box = Eigen::AlignedBox3d;
+
+std::shared_ptr<fcl::Convex<double>> convex(const TriangleMesh& part) {
+  auto vertices =
+      std::make_shared<std::vector<fcl::Vector3d>>(part.vertices.begin(), part.vertices.end());
+  auto faces = std::make_shared<std::vector<int>>(polygon_list(part));
+  return std::make_shared<fcl::Convex<double>>(
+      std::move(vertices), static_cast<int>(part.triangles.size()), std::move(faces));
+}
+
+class MeshesAndConvexParts : public SingleChecker {
+ public:
+  MeshesAndConvexParts(const Workload& workload, std::size_t obstacle,
+                       const std::vector<TriangleMesh>& parts)
+      : SingleChecker(workload.robot) {
+    for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+      const Obstacle& standing = workload.obstacles[i];
+      const auto pose = fcl_pose<double>(standing.world_from_part);
+      if (i != obstacle) {
+        const Model model(standing.part.mesh);
+        static_.push_back({model.geometry, pose, model.world_box(pose), i});
+        continue;
+      }
+      for (const TriangleMesh& part : parts) {
+        const Box box = bounding_box(placed(part, pose.linear(), pose.translation()));
+        static_.push_back({convex(part), pose, box, i});
+      }
+    }
+    for (const Body& body : workload.bodies) {
+      bodies_.push_back({Model(body.part.mesh), static_cast<std::size_t>(body.link), {}});
+      for (std::size_t i = 0; i < static_.size(); ++i) {
+        if (is_tested(body, workload.obstacles[static_[i].obstacle])) {
+          bodies_.back().against.push_back(i);
+        }
+      }
+    }
+  }
+
+ protected:
+  bool collides(std::span<const Pose> world_from_link) override {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Moving& body) {
+      const auto pose = fcl_pose<double>(world_from_link[body.link]);
+      const Box box = body.model.world_box(pose);
+      return std::any_of(body.against.begin(), body.against.end(), [&](std::size_t i) {
+        const Static& other = static_[i];
+        if (!box.intersects(other.box)) return false;
+        const fcl::CollisionRequest<double> request;  // one contact, not kept
+        fcl::CollisionResult<double> result;
+        return fcl::collide(body.model.geometry.get(), pose, other.geometry.get(), other.pose,
+                            request, result) > 0;
+      });
+    });
+  }
+
+ private:
+  struct Static {
+    std::shared_ptr<const fcl::CollisionGeometry<double>> geometry;
+    fcl::Transform3<double> pose;
+    Box box;
+    std::size_t obstacle;
+  };
+  struct Moving {
+    Model model;
+    std::size_t link;
+    std::vector<std::size_t> against;
+  };
+  std::vector<Static> static_;
+  std::vector<Moving> bodies_;
+};
+
+}  // namespace
+
+std::unique_ptr<Checker> make_fcl_convex_checker(const Workload& workload, std::size_t obstacle,
+                                                 const std::vector<TriangleMesh>& parts) {
+  if (parts.empty()) throw Error(workload.name, "no convex parts");
+  return std::make_unique<MeshesAndConvexParts>(workload, obstacle, parts);
 }
 
 }  // namespace spherule

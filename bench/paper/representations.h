@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/workload.h"
+#include "bench/checkers/workload.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,5 +36,26 @@ struct Representation {
 // in spheres. Packing and voxels stand there as the paper has them and once more so that they
 // cover.
 std::vector<Representation> make_representations(const Workload& workload);
+
+// A way to make spheres of a mesh that is told how fine they are to be.
+struct SphereMethod {
+  std::string name;
+  // `error` is what the method may err by at most, in the unit of the mesh: the smaller,
+  // the more spheres. What the method makes of it is its own business.
+  std::function<std::vector<Sphere>(const TriangleMesh& mesh, double error)> make;
+};
+
+// Those that are compared: packing, OpenVDB's own, voxels, octree, Hubbard's and medial-axis
+// spheres as the literature makes them; the bounding sphere simplification by the paper's loop and
+// by ours after stage 1 with D = 4 E; and ours with D = E, at which hardly any part changes
+// ("cover-as-is"; the paper's loop without stage 1 is the packing).
+std::vector<SphereMethod> sphere_methods();
+
+// FCL on convex parts (GJK by libccd) in place of one obstacle's mesh: the bodies and all other
+// obstacles stay meshes, in hierarchies of OBBRSS in double behind exact axis-parallel boxes. The
+// parts are closed, convex, with outward triangles, in the obstacle's frame. Throws Error for no
+// parts.
+std::unique_ptr<Checker> make_fcl_convex_checker(const Workload& workload, std::size_t obstacle,
+                                                 const std::vector<TriangleMesh>& parts);
 
 }  // namespace spherule

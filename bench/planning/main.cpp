@@ -5,12 +5,12 @@
 #include "base/error.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/checkers/tree_checker.h"
-#include "bench/clock.h"
-#include "bench/fit_parts.h"
 #include "bench/planning/arguments.h"
-#include "bench/planning/planning_cell.h"
+#include "bench/planning/problems.h"
 #include "bench/planning/report.h"
-#include "bench/scenes/torch.h"
+#include "bench/scenes/work_cell_parts.h"
+#include "bench/studies/fit_parts.h"
+#include "bench/studies/measure.h"
 
 #include <cstdio>
 

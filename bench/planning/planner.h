@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/configuration.h"
+#include "bench/checkers/workload.h"
 #include "bench/planning/problems.h"
 #include "robot/check/robot_checker.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -49,5 +50,11 @@ struct Plan {
 // RRTConnect as OMPL sets it up by itself.
 Plan plan(const PlanningEngines& engines, Validity validity, const PlanningProblem& problem,
           const PlanOptions& options = {});
+
+// Of this process so far, in ticks of a microsecond: what is timed by it runs on one thread, and
+// what else the machine does hardly shows.
+inline double processor_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 }  // namespace spherule

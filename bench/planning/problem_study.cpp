@@ -2,11 +2,11 @@
 #include "bench/planning/problem_study.h"
 
 #include "bench/checkers/fcl_mesh_checker.h"
-#include "bench/clock.h"
-#include "bench/planning/path_check.h"
-#include "bench/planning/planning_cell.h"
+#include "bench/planning/problems.h"
+#include "bench/studies/measure.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace spherule {
 namespace {
@@ -103,6 +103,33 @@ double median_milliseconds(const ProblemRow& row) {
     if (plan.is_solved()) times.push_back(1e3 * plan.seconds);
   }
   return median(std::move(times));
+}
+
+PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& in_contact,
+                     double step) {
+  PathCheck result;
+  const auto test = [&](const Configuration& at) {
+    ++result.configurations;
+    result.contacts += in_contact(at) ? 1 : 0;
+  };
+  if (!path.empty()) test(path.front());
+  Configuration at;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    double most = 0.0;
+    for (std::size_t k = 0; k < path[i].size(); ++k) {
+      most = std::max(most, std::abs(path[i][k] - path[i - 1][k]));
+    }
+    const auto steps = std::max(1, static_cast<int>(std::ceil(most / step)));
+    at.resize(path[i].size());
+    for (int s = 1; s <= steps; ++s) {
+      const double t = static_cast<double>(s) / steps;
+      for (std::size_t k = 0; k < at.size(); ++k) {
+        at[k] = (1.0 - t) * path[i - 1][k] + t * path[i][k];
+      }
+      test(at);
+    }
+  }
+  return result;
 }
 
 }  // namespace spherule

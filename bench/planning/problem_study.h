@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/checkers/workload.h"
 #include "bench/planning/planner.h"
 
 #include <cstddef>
@@ -53,5 +54,15 @@ ProblemComparison compare(const ProblemRow& row, const ProblemRow& meshes);
 
 // Milliseconds of the solved ones.
 double median_milliseconds(const ProblemRow& row);
+
+struct PathCheck {
+  std::size_t configurations = 0;  // examined
+  std::size_t contacts = 0;        // of these, in contact
+};
+
+// Queries an engine about configurations on a path of straight motions in joint space, its corners
+// included, no joint moving by more than `step` radians from one to the next.
+PathCheck check_path(const std::vector<Configuration>& path, const ContactTest& in_contact,
+                     double step);
 
 }  // namespace spherule

@@ -2,14 +2,28 @@
 #include "bench/planning/problems.h"
 
 #include "base/error.h"
-#include "bench/planning/path_check.h"
-#include "bench/planning/planning_cell.h"
-#include "bench/studies/random_numbers.h"
+#include "bench/planning/problem_study.h"
+#include "bench/studies/refined_cover.h"
 
 #include <algorithm>
 #include <cstdint>
 
 namespace spherule {
+
+bool collides(Checker& checker, const ArmPositions& positions) {
+  std::uint8_t verdict = 0;
+  checker.check({&positions, 1}, {&verdict, 1});
+  return verdict != 0;
+}
+
+ContactTest contact_test(Checker& checker) {
+  return [&checker](std::span<const double> configuration) {
+    ArmPositions positions;
+    std::copy_n(configuration.begin(), kJoints, positions.begin());
+    return collides(checker, positions);
+  };
+}
+
 namespace {
 
 constexpr std::uint64_t kSeed = 11;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/fit_parts.h"
 #include "bench/planning/problem_study.h"
 #include "bench/planning/process_study.h"
+#include "bench/studies/fit_parts.h"
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/checkers/workload.h"
+#include "bench/studies/refined_cover.h"
 #include "collide/meshes/mesh_contact.h"
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
@@ -11,7 +13,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -40,5 +44,36 @@ Arm make_panda(const std::filesystem::path& models, const std::string& cover);
 // and what did not touch in a sample, too.
 AllowedCollisions joined_contacts(const Arm& arm);
 AllowedCollisions allowed_contacts(const Arm& arm);
+
+// Another library's check of an arm's meshes in a scene, one configuration a call.
+class ArmChecker {
+ public:
+  virtual ~ArmChecker() = default;
+  virtual const char* name() const = 0;
+  virtual bool collides(std::span<const double> configuration) = 0;
+};
+
+// What is tested: links with a mesh that a variable moves, against the scene; and pairs of links.
+struct TestedLinks {
+  std::vector<std::size_t> moving{};
+  std::vector<std::pair<std::size_t, std::size_t>> pairs{};
+};
+TestedLinks tested_links(const Arm& arm, const AllowedCollisions& allowed);
+
+struct Edge {
+  Configuration from;
+  Configuration to;
+};
+
+// Within the limits of the joints.
+Configuration random_configuration(const RobotModel& robot, RandomNumbers& random);
+
+// In the direction of another configuration, by up to 1.5 radians of the joint that turns most.
+Edge random_edge(const RobotModel& robot, RandomNumbers& random);
+
+// All configurations but the start, which is known to be free, with no more than `step` between
+// neighbours in any joint: the end first and then halves of what is left, as planners take them
+// (OMPL's DiscreteMotionValidator), so as to meet a contact early.
+std::vector<Configuration> samples(const Edge& edge, double step);
 
 }  // namespace spherule

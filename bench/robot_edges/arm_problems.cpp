@@ -2,7 +2,7 @@
 #include "bench/robot_edges/arm_problems.h"
 
 #include "base/error.h"
-#include "bench/robot_edges/edges.h"
+#include "bench/robot_edges/arm.h"
 
 #include <utility>
 

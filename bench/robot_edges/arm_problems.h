@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/planning/problems.h"
-#include "bench/robot_edges/fcl_arm.h"
-#include "bench/studies/random_numbers.h"
+#include "bench/robot_edges/peer_arms.h"
+#include "bench/studies/refined_cover.h"
 #include "robot/check/robot_checker.h"
 
 #include <cstddef>

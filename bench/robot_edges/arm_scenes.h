@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "bench/robot_edges/arm.h"
 #include "collide/solids/primitive.h"
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
+#include "robot/check/robot_scene.h"
 
 #include <cstddef>
 #include <string>
@@ -40,5 +42,9 @@ ArmScene scene_of_triangles(std::size_t count);
 
 // Fifty primitives, a cloud of 4,000 points and a solid mesh of 20,000 triangles.
 std::vector<ArmScene> larger_scenes();
+
+// The arm in a scene, as a RobotScene. What stands with the arm's root is not tested against the
+// scene.
+RobotScene robot_scene(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene);
 
 }  // namespace spherule

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/robot_edges/arm_checker.h"
+#include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_scenes.h"
 
 #include <memory>

@@ -7,16 +7,12 @@
 // of their times; and what self-collision and more spheres cost.
 //   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]
 
-#include "bench/clock.h"
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_scenes.h"
-#include "bench/robot_edges/counts.h"
 #include "bench/robot_edges/course.h"
-#include "bench/robot_edges/edges.h"
-#include "bench/robot_edges/fcl_arm.h"
-#include "bench/robot_edges/shares.h"
-#include "bench/robot_edges/times.h"
-#include "bench/studies/random_numbers.h"
+#include "bench/robot_edges/peer_arms.h"
+#include "bench/studies/measure.h"
+#include "bench/studies/refined_cover.h"
 #include "robot/check/robot_scene.h"
 #include "tests/support/program.h"
 

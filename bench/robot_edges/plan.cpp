@@ -11,8 +11,7 @@
 #include "bench/robot_edges/arm.h"
 #include "bench/robot_edges/arm_problems.h"
 #include "bench/robot_edges/arm_scenes.h"
-#include "bench/robot_edges/fcl_arm.h"
-#include "bench/robot_edges/robot_scenes.h"
+#include "bench/robot_edges/peer_arms.h"
 #include "tests/support/program.h"
 
 #include <cstdio>

@@ -4,10 +4,7 @@
 // the weld program's start. Usage: spherule_cell_files FOLDER
 
 #include "bench/scenes/program.h"
-#include "bench/scenes/robot.h"
-#include "bench/scenes/table.h"
-#include "bench/scenes/torch.h"
-#include "bench/scenes/workpiece.h"
+#include "bench/scenes/work_cell_parts.h"
 #include "io/mesh_io.h"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/clock.h"
-#include "bench/studies/fcl_pair.h"
-#include "bench/studies/random_numbers.h"
+#include "bench/studies/measure.h"
+#include "bench/studies/refined_cover.h"
 #include "bench/studies/study.h"
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"

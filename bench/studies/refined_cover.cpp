@@ -2,14 +2,20 @@
 #include "bench/studies/refined_cover.h"
 
 #include "base/error.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/studies/measure.h"
 #include "geometry/median_split.h"
+#include "tests/support/fcl_models.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <numeric>
 #include <queue>
 #include <span>
@@ -200,6 +206,137 @@ std::vector<Sphere> refine_cover(const TriangleMesh& mesh, std::span<const Spher
     for (const Group& half : split(largest)) groups.push(half);
   }
   return spheres;
+}
+
+std::vector<Sphere> coarse_cover(const SphereTree& tree, std::size_t count) {
+  std::priority_queue<std::pair<double, std::size_t>> nodes;
+  nodes.push({tree.sphere(0).radius, 0});
+  std::vector<Sphere> spheres;
+  while (!nodes.empty()) {
+    const std::size_t node = nodes.top().second;
+    nodes.pop();
+    const auto children = static_cast<std::size_t>(tree.child_count(node));
+    if (tree.is_leaf(node) || spheres.size() + nodes.size() + children > count) {
+      spheres.push_back(tree.sphere(node));
+      continue;
+    }
+    for (std::size_t i = 0; i < children; ++i) {
+      const std::size_t child = static_cast<std::size_t>(tree.first_child(node)) + i;
+      nodes.push({tree.sphere(child).radius, child});
+    }
+  }
+  return spheres;
+}
+
+namespace {
+
+template <class Volume>
+class FclPair : public PairEngine {
+ public:
+  FclPair(const TriangleMesh& a, const TriangleMesh& b, bool boxes_in_front)
+      : a_(a), b_(b), box_(b_.world_box(world_from_b_)), boxes_in_front_(boxes_in_front) {}
+
+  void set_poses(std::span<const Pose> world_from_a) override {
+    poses_.clear();
+    for (const Pose& pose : world_from_a) poses_.push_back(fcl_pose<S>(pose));
+  }
+
+  bool collides(std::size_t pose) override {
+    if (boxes_in_front_ && !a_.world_box(poses_[pose]).intersects(box_)) return false;
+    return fcl_meshes_touch<Volume>(*a_.geometry, poses_[pose], *b_.geometry, world_from_b_);
+  }
+
+  double distance(std::size_t pose) override {
+    return static_cast<double>(
+        fcl_mesh_distance<Volume>(*a_.geometry, poses_[pose], *b_.geometry, world_from_b_));
+  }
+
+ private:
+  using S = typename Volume::S;
+
+  const fcl::Transform3<S> world_from_b_ = fcl::Transform3<S>::Identity();
+  FclModel<Volume> a_;
+  FclModel<Volume> b_;
+  Eigen::AlignedBox<S, 3> box_;
+  bool boxes_in_front_;
+  std::vector<fcl::Transform3<S>> poses_;
+};
+
+template <class Volume>
+NamedPairEngine named(const char* name, const TriangleMesh& a, const TriangleMesh& b,
+                      bool boxes_in_front) {
+  return {name, std::make_unique<FclPair<Volume>>(a, b, boxes_in_front)};
+}
+
+std::vector<NamedPairEngine> collide_engines(const TriangleMesh& a, const TriangleMesh& b,
+                                             bool boxes_in_front) {
+  std::vector<NamedPairEngine> engines;
+  engines.push_back(named<fcl::OBB<double>>("OBB double", a, b, boxes_in_front));
+  engines.push_back(named<fcl::OBB<float>>("OBB float", a, b, boxes_in_front));
+  engines.push_back(named<fcl::OBBRSS<double>>("OBBRSS double", a, b, boxes_in_front));
+  engines.push_back(named<fcl::OBBRSS<float>>("OBBRSS float", a, b, boxes_in_front));
+  return engines;
+}
+
+}  // namespace
+
+std::vector<NamedPairEngine> fcl_collide_engines(const TriangleMesh& a, const TriangleMesh& b) {
+  return collide_engines(a, b, false);
+}
+
+std::vector<NamedPairEngine> fcl_boxed_collide_engines(const TriangleMesh& a,
+                                                       const TriangleMesh& b) {
+  return collide_engines(a, b, true);
+}
+
+std::vector<NamedPairEngine> fcl_distance_engines(const TriangleMesh& a, const TriangleMesh& b) {
+  std::vector<NamedPairEngine> engines;
+  engines.push_back(named<fcl::OBBRSS<double>>("OBBRSS double", a, b, false));
+  engines.push_back(named<fcl::OBBRSS<float>>("OBBRSS float", a, b, false));
+  engines.push_back(named<fcl::RSS<double>>("RSS double", a, b, false));
+  return engines;
+}
+
+namespace {
+
+// Long against the clock and the change of caches, short against a time slice of the machine.
+constexpr std::size_t kRun = 1024;
+
+}  // namespace
+
+std::vector<double> time_in_turns(std::span<const std::unique_ptr<Checker>> checkers,
+                                  std::span<const ArmPositions> configurations, int rounds) {
+  const std::size_t runs = (configurations.size() + kRun - 1) / kRun;
+  // By checker and run: the least so far.
+  std::vector<std::vector<double>> least(
+      checkers.size(), std::vector<double>(runs, std::numeric_limits<double>::infinity()));
+  std::vector<std::uint8_t> verdicts(kRun);
+  for (int round = -1; round < rounds; ++round) {
+    for (std::size_t run = 0; run < runs; ++run) {
+      const std::size_t first = run * kRun;
+      const auto queried =
+          configurations.subspan(first, std::min(kRun, configurations.size() - first));
+      for (std::size_t i = 0; i < checkers.size(); ++i) {
+        const auto start = Clock::now();
+        checkers[i]->check(queried, {verdicts.data(), queried.size()});
+        const double time = nanoseconds(Clock::now() - start);
+        if (round >= 0) least[i][run] = std::min(least[i][run], time);
+      }
+    }
+  }
+  std::vector<double> result;
+  for (const auto& of_checker : least) {
+    const double sum = std::accumulate(of_checker.begin(), of_checker.end(), 0.0);
+    result.push_back(sum / static_cast<double>(configurations.size()));
+  }
+  return result;
+}
+
+std::vector<std::uint8_t> verdicts_of(Checker& checker,
+                                      std::span<const ArmPositions> configurations) {
+  std::vector<std::uint8_t> verdicts(configurations.size());
+  checker.check(configurations, verdicts);
+  return verdicts;
 }
 
 }  // namespace spherule

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/checkers/flat_scan_checker.h"
 #include "bench/checkers/tree_checker.h"
 #include "bench/scenes/program.h"
 #include "bench/studies/refined_cover.h"
 #include "bench/studies/study.h"
-#include "bench/studies/turns.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -103,6 +104,119 @@ std::vector<SizeRow> study_sizes(const Workload& workload,
     rows[i].shuffled_ns = shuffled_ns[i];
     rows[i].batch_ns = batch_ns[i];
     rows[i].free_ns = free_ns[i];
+  }
+  return rows;
+}
+
+namespace {
+
+constexpr std::size_t kObstacles[] = {14, 30, 60, 100};
+constexpr std::uint64_t kSeed = 4;
+constexpr std::size_t kRandomConfigurations = 4000;
+// Spheres of a body in the coarse robot: with eight bodies about as many as robots have in cuRobo's
+// and VAMP's descriptions.
+constexpr std::size_t kCoarseBody = 10;
+
+// About the robot, as far out as it reaches, clear of it at the first configuration.
+std::shared_ptr<const SphereTree> scattered(const Workload& workload, std::size_t count,
+                                            RandomNumbers& random) {
+  std::vector<Sphere> spheres;
+  while (spheres.size() < count) {
+    const double angle = random.between(-3.2, 3.2);
+    const double distance = random.between(0.7, 2.5);
+    const Sphere sphere{
+        {distance * std::cos(angle), distance * std::sin(angle), random.between(0.0, 2.2)},
+        random.between(0.05, 0.2)};
+    Workload alone = workload;
+    alone.obstacles = {{{.name = "ball",
+                         .mesh = {},
+                         .tree = std::make_shared<const SphereTree>(build_tree({&sphere, 1}))},
+                        Pose()}};
+    std::uint8_t hit = 0;
+    make_tree_checker(alone, TreeMode::kSingle)->check({workload.program.data(), 1}, {&hit, 1});
+    if (hit == 0) spheres.push_back(sphere);
+  }
+  return std::make_shared<const SphereTree>(build_tree(spheres));
+}
+
+std::vector<ArmPositions> random_configurations(const RobotModel& robot) {
+  RandomNumbers random(kSeed);
+  std::vector<ArmPositions> result(kRandomConfigurations);
+  for (ArmPositions& configuration : result) {
+    for (const Joint& joint : robot.joints()) {
+      configuration[static_cast<std::size_t>(joint.variable)] =
+          random.between(joint.lower, joint.upper);
+    }
+  }
+  return result;
+}
+
+// Nothing but forward_kinematics().
+class Kinematics : public SingleChecker {
+ public:
+  using SingleChecker::SingleChecker;
+
+ protected:
+  bool collides(std::span<const Pose> world_from_link) override {
+    return world_from_link.back().translation().x() > kMaxCoordinate;
+  }
+};
+
+SmallRow measure_row(const Workload& cell, const std::vector<ArmPositions>& configurations,
+                     std::string order, int rounds) {
+  std::vector<std::unique_ptr<Checker>> checkers;
+  for (const TreeMode mode : {TreeMode::kSingle, TreeMode::kBatch, TreeMode::kPairs}) {
+    checkers.push_back(make_tree_checker(cell, mode));
+  }
+  checkers.push_back(make_flat_scan_checker(cell, FlatScan::kSpheresInFront));
+  checkers.push_back(std::make_unique<Kinematics>(cell.robot));
+  const auto exact = verdicts_of(*checkers[2], configurations);
+  const auto flat = verdicts_of(*checkers[3], configurations);
+  const auto times = time_in_turns(checkers, configurations, rounds);
+  SmallRow row;
+  row.order = std::move(order);
+  for (const Body& body : cell.bodies) row.robot_spheres += body.part.tree->spheres().size();
+  row.obstacles = cell.obstacles.front().part.tree->spheres().size();
+  row.single_ns = times[0];
+  row.batch_ns = times[1];
+  row.collides_ns = times[2];
+  row.flat_scan_ns = times[3];
+  row.kinematics_ns = times[4];
+  std::size_t collisions = 0;
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    collisions += exact[i];
+    row.missed += exact[i] != 0 && flat[i] == 0 ? 1 : 0;
+    row.extra += flat[i] != 0 && exact[i] == 0 ? 1 : 0;
+  }
+  row.collision_percent =
+      100.0 * static_cast<double>(collisions) / static_cast<double>(configurations.size());
+  return row;
+}
+
+}  // namespace
+
+std::vector<SmallRow> study_small_environments(const Workload& workload,
+                                               const StudyOptions& options) {
+  Workload coarse = workload;
+  for (Body& body : coarse.bodies) {
+    body.part.tree =
+        std::make_shared<const SphereTree>(build_tree(coarse_cover(*body.part.tree, kCoarseBody)));
+  }
+  std::vector<ArmPositions> path;
+  for (std::size_t i = 0; i < workload.program.size(); i += options.stride) {
+    path.push_back(workload.program[i]);
+  }
+  const auto random = random_configurations(workload.robot);
+  RandomNumbers places(kSeed);
+  std::vector<SmallRow> rows;
+  for (const std::size_t count : kObstacles) {
+    const auto spheres = scattered(coarse, count, places);
+    for (const bool is_coarse : {true, false}) {
+      Workload cell = is_coarse ? coarse : workload;
+      cell.obstacles = {{{.name = "spheres", .mesh = {}, .tree = spheres}, Pose()}};
+      rows.push_back(measure_row(cell, path, "path", options.rounds));
+      rows.push_back(measure_row(cell, random, "random", options.rounds));
+    }
   }
   return rows;
 }

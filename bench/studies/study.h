@@ -4,7 +4,7 @@
 // What is measured beside the workload: how the cost of a check grows with the number of spheres,
 // what it is among few obstacles, and how it depends on the distance of two bodies.
 
-#include "bench/workload.h"
+#include "bench/checkers/workload.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The judge of closings on shapes whose closing is known, and what it says of stage 1's spheres.
-#include "bench/closing/distance_transform.h"
+#include "bench/closing/closed_solid.h"
 #include "bench/closing/protrusion_judge.h"
 #include "simplifier/simplify.h"
 #include "tests/support/effort.h"

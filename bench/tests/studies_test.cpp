@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "bench/scenes/torch.h"
-#include "bench/studies/coarse_cover.h"
-#include "bench/studies/fcl_pair.h"
+#include "bench/scenes/work_cell_parts.h"
 #include "bench/studies/refined_cover.h"
-#include "bench/studies/turns.h"
 #include "spheretree/build.h"
 #include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/hubbard_spheres.h"
-
 #include "base/error.h"
-#include "bench/baseline/internal/surface_samples.h"
 #include "bench/baseline/made_conservative.h"
+#include "bench/baseline/medial_cover.h"
+#include "bench/baseline/mesh_probe.h"
 #include "bench/tests/baseline/cover_check.h"
 #include "spheretree/check.h"
 #include "tests/simplifier/judge.h"

@@ -2,10 +2,9 @@
 #include "bench/baseline/medial_axis.h"
 
 #include "base/error.h"
-#include "bench/baseline/internal/medial_spheres.h"
-#include "bench/baseline/internal/mesh_probe.h"
-#include "bench/baseline/internal/surface_samples.h"
 #include "bench/baseline/made_conservative.h"
+#include "bench/baseline/medial_spheres.h"
+#include "bench/baseline/mesh_probe.h"
 #include "bench/tests/baseline/cover_check.h"
 #include "spheretree/check.h"
 #include "tests/simplifier/judge.h"

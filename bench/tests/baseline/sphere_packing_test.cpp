@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/sphere_packing.h"
-
 #include "base/error.h"
+#include "bench/baseline/packing_cover.h"
 #include "bench/tests/baseline/cover_check.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/judge.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/internal/sphere_reduction.h"
+#include "bench/baseline/sphere_reduction.h"
 
-#include "bench/baseline/internal/mesh_probe.h"
-#include "bench/baseline/internal/surface_samples.h"
+#include "bench/baseline/mesh_probe.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stage 2 methods that baselines offer: medial_cover() and packing_cover().
 #include "base/error.h"
-#include "bench/baseline/internal/simplified_probe.h"
 #include "bench/baseline/medial_cover.h"
+#include "bench/baseline/mesh_probe.h"
 #include "bench/baseline/packing_cover.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/internal/triangle_cube.h"
-
+#include "bench/baseline/cell_octree.h"
 #include "bench/tests/baseline/exact_cube.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

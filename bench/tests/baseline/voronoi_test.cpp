@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/internal/voronoi.h"
+#include "bench/baseline/voronoi.h"
 
 #include "tests/support/random.h"
 

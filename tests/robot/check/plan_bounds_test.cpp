@@ -8,7 +8,7 @@
 #include "robot/check/plan_source.h"
 #include "robot/model/joint_positions.h"
 #include "tests/collide/trees.h"
-#include "tests/robot/model/path_bounds.h"
+#include "tests/robot/path_bounds.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 

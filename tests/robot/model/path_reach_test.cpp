@@ -6,7 +6,7 @@
 #include "robot/model/kinematics.h"
 #include "robot/model/link_paths.h"
 #include "tests/robot/check/edge_oracle.h"
-#include "tests/robot/model/path_bounds.h"
+#include "tests/robot/path_bounds.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 

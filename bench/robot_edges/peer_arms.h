@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bench/robot_edges/arm.h"
+#include "bench/robot_edges/arm_scenes.h"
+#include "robot/pairs/allowed_collisions.h"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace spherule {
+
+// FCL's volumes around triangles that are fast on moving meshes.
+enum class FclVolume { kObb, kObbRss };
+
+// The arm's meshes in a scene, and against each other where this is not allowed, by FCL in
+// double, with a test of boxes along the world's axes in front (of many obstacles: behind FCL's
+// dynamic AABB tree of them). What tells a link inside another
+// one or inside the scene's mesh is not queried; primitives are solid to FCL, and so are the
+// spheres about the points of a cloud.
+class FclArm : public ArmChecker {
+ public:
+  FclArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene, FclVolume volume);
+  ~FclArm() override;
+
+  const char* name() const override;
+  bool collides(std::span<const double> configuration) override;
+  // Whether the middle of an obstacle is inside of a link, which surfaces do not tell.
+  bool holds_an_obstacle(std::span<const double> configuration);
+
+ private:
+  struct Parts;
+  FclVolume volume_;
+  std::unique_ptr<Parts> parts_;
+};
+
+// The arm's spheres without a hierarchy: all of each link against all obstacles, and all pairs of
+// two links', behind a test of the spheres around links (and, for the points of a cloud, of each
+// point). Double precision, in loops that compilers vectorise. Solid meshes are not queried.
+class FlatArm {
+ public:
+  FlatArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene);
+
+  bool collides(std::span<const double> configuration);
+
+ private:
+  // Coordinates and radii, in the link's frame or the world.
+  struct Spheres {
+    std::vector<double> x, y, z, radius;
+
+    void add(const Sphere& sphere);
+    std::size_t size() const { return x.size(); }
+  };
+  struct LinkSpheres {
+    std::size_t link;
+    bool moves;
+    Spheres spheres;
+    Sphere around;
+  };
+
+  static bool any_within(const Spheres& spheres, const Eigen::Vector3d& center, double radius);
+  bool touches_obstacles(const Spheres& placed, const Sphere& around) const;
+
+  const RobotModel& robot_;
+  const ArmScene& scene_;
+  std::vector<LinkSpheres> links_;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of links_
+  Spheres cloud_;
+  std::vector<Pose> poses_;
+  std::vector<Spheres> placed_;
+  std::vector<Sphere> around_;
+};
+
+}  // namespace spherule
