@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
-#include "tests/mesh/mesh_files.h"
 #include "tests/support/effort.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/zoo.h"
 
 #include <cmath>

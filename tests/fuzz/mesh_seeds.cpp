@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz_seeds.h"
-#include "tests/mesh/mesh_files.h"
-#include "tests/mesh/scene_files.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

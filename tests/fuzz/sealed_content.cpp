@@ -2,7 +2,7 @@
 #include "tests/fuzz/sealed_content.h"
 
 #include "base/crc64.h"
-#include "tests/mesh/mesh_files.h"
+#include "tests/support/mesh_files.h"
 
 #include <cstdint>
 

@@ -38,10 +38,10 @@ bool overlap(const AlignedBox3d& a, const Pose& of_a, const AlignedBox3d& b, con
   return true;
 }
 
-AlignedBox3d random_box(SceneRandom& random) {
+AlignedBox3d random_box(Random& random) {
   const Vector3d center = random.point(0.3);
-  const Vector3d half(random.uniform(0.02, 0.1), random.uniform(0.02, 0.1),
-                      random.uniform(0.02, 0.4));
+  const Vector3d half(random.between(0.02, 0.1), random.between(0.02, 0.1),
+                      random.between(0.02, 0.4));
   return {center - half, center + half};
 }
 
@@ -62,7 +62,7 @@ void BoxRobot::add_boxes(int link, std::vector<AlignedBox3d> of_link) {
   bodies.push_back({.link = link, .mesh = std::make_shared<const SolidMesh>(mesh)});
 }
 
-BoxRobot random_box_robot(SceneRandom& random, int joints, bool branching, bool mimics) {
+BoxRobot random_box_robot(Random& random, int joints, bool branching, bool mimics) {
   BoxRobot robot{RobotModel("link_0")};
   for (int i = 0; i < joints; ++i) {
     const int parent = branching ? random.whole(0, i) : i;
@@ -75,8 +75,8 @@ BoxRobot random_box_robot(SceneRandom& random, int joints, bool branching, bool 
     joint.parent_from_joint = random.pose(0.6);
     joint.axis = random.point(3.0);
     const double size = joint.type == JointType::kPrismatic ? 0.5 : 2.5;
-    joint.lower = random.uniform(-size, 0.0);
-    joint.upper = random.uniform(0.0, size);
+    joint.lower = random.between(-size, 0.0);
+    joint.upper = random.between(0.0, size);
     robot.model.add_link("link_" + std::to_string(i + 1), "link_" + std::to_string(parent), joint);
   }
   if (mimics) add_random_mimics(random, robot.model, 1.0);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "robot/pairs/link_pairs.h"
-#include "tests/collide/scene_random.h"
+#include "tests/support/random.h"
 
 #include <Eigen/Geometry>
 
@@ -22,7 +22,7 @@ struct BoxRobot {
 };
 
 // Joints of all types with limits, mimics where `mimics`, rods and blocks as links.
-BoxRobot random_box_robot(SceneRandom& random, int joints, bool branching, bool mimics);
+BoxRobot random_box_robot(Random& random, int joints, bool branching, bool mimics);
 
 // Two bars, links 1 and 2, along x, one above the other, that turn about the z axis of the base;
 // the lower one begins at this height. They touch in no configuration.

@@ -7,7 +7,7 @@
 
 namespace spherule::test {
 
-RobotModel random_robot(SceneRandom& random, int joints, bool branching) {
+RobotModel random_robot(Random& random, int joints, bool branching) {
   RobotModel robot("link_0");
   for (int i = 0; i < joints; ++i) {
     const int parent = branching ? random.whole(0, i) : i;
@@ -23,25 +23,24 @@ RobotModel random_robot(SceneRandom& random, int joints, bool branching) {
   return robot;
 }
 
-void add_random_mimics(SceneRandom& random, RobotModel& robot, double offset) {
+void add_random_mimics(Random& random, RobotModel& robot, double offset) {
   for (const Joint& joint : std::vector<Joint>(robot.joints())) {
     if (!joint.moves() || random.whole(0, 1) == 0) continue;
     const int last = static_cast<int>(robot.joints().size()) - 1;
     const auto other = static_cast<std::size_t>(random.whole(0, last));
     try {
-      robot.mimic(joint.name, robot.joints()[other].name, random.uniform(-1.0, 1.0),
-                  random.uniform(-offset, offset));
+      robot.mimic(joint.name, robot.joints()[other].name, random.between(-1.0, 1.0),
+                  random.between(-offset, offset));
     } catch (const Error&) {
       // It is fixed, or follows this one.
     }
   }
 }
 
-std::vector<double> random_configuration(SceneRandom& random, const RobotModel& robot,
-                                         double largest) {
+std::vector<double> random_configuration(Random& random, const RobotModel& robot, double largest) {
   std::vector<double> configuration;
   for (int i = 0; i < robot.variable_count(); ++i) {
-    configuration.push_back(random.uniform(-largest, largest));
+    configuration.push_back(random.between(-largest, largest));
   }
   return configuration;
 }

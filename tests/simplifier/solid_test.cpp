@@ -7,9 +7,9 @@
 #include "simplifier/solid/nearest_cells.h"
 #include "simplifier/solid/solid_query.h"
 #include "simplifier/solid/sphere_hierarchy.h"
-#include "tests/mesh/distance_oracle.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/effort.h"
+#include "tests/support/exact/shapes.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Geometry>
@@ -52,19 +52,19 @@ std::vector<Sphere> random_spheres(Random& random, std::size_t count, int kind, 
   return spheres;
 }
 
-Digits50 exact_gap(const Vector3d& p, std::span<const Sphere> spheres) {
-  Digits50 gap(1e300);
+Real exact_gap(const Vector3d& p, std::span<const Sphere> spheres) {
+  Real gap(1e300);
   for (const Sphere& s : spheres) {
-    gap = std::min(gap, Digits50(exact_distance(p, s.center) - s.radius));
+    gap = std::min(gap, Real(exact_distance(p, s.center) - s.radius));
   }
   return gap;
 }
 
-Digits50 exact_clearance(const Vector3d& p, const ExternalSpheres& external) {
-  Digits50 least = exact_gap(p, external.spheres);
+Real exact_clearance(const Vector3d& p, const ExternalSpheres& external) {
+  Real least = exact_gap(p, external.spheres);
   for (int axis = 0; axis < 3; ++axis) {
-    least = std::min({least, Digits50(p[axis]) - external.box.min()[axis],
-                      Digits50(external.box.max()[axis]) - p[axis]});
+    least = std::min({least, Real(p[axis]) - external.box.min()[axis],
+                      Real(external.box.max()[axis]) - p[axis]});
   }
   return least;
 }
@@ -91,9 +91,9 @@ std::vector<Sphere> spheres_about_rod(Random& random) {
 }
 
 template <class Bounded>
-void expect_between(const Bounded& found, const Digits50& exact) {
-  ASSERT_LE(Digits50(found.lower), exact);
-  ASSERT_GE(Digits50(found.upper), exact);
+void expect_between(const Bounded& found, const Real& exact) {
+  ASSERT_LE(Real(found.lower), exact);
+  ASSERT_GE(Real(found.upper), exact);
 }
 
 const AlignedBox3d kAround(Vector3d::Constant(-1), Vector3d::Constant(5));
@@ -109,12 +109,12 @@ TEST(SphereHierarchy, BoundsContainTheExactGapAtEveryScaleAndPlace) {
     for (int k = 0; k < 40; ++k) {
       const Vector3d p =
           k == 0 ? spheres.front().center : Vector3d(scale * random.in_box(kAround) + shift);
-      const Digits50 exact = exact_gap(p, spheres);
+      const Real exact = exact_gap(p, spheres);
       const NearestSphere found = hierarchy.nearest(p);
       ASSERT_NO_FATAL_FAILURE(expect_between(found, exact));
       ASSERT_LE(found.upper - found.lower, 1e-13 * (10.0 * scale + shift.norm()));
       const Sphere& sphere = spheres.at(static_cast<std::size_t>(found.index));
-      ASSERT_LE(exact_distance(p, sphere.center) - sphere.radius, Digits50(found.upper));
+      ASSERT_LE(exact_distance(p, sphere.center) - sphere.radius, Real(found.upper));
     }
   }
 }
@@ -128,7 +128,7 @@ TEST(SphereHierarchy, LimitAndToleranceLoosenTheBoundsAsStated) {
     const SphereHierarchy hierarchy(spheres);
     for (int k = 0; k < 30; ++k) {
       const Vector3d p = random.in_box(kAround);
-      const Digits50 exact = exact_gap(p, spheres);
+      const Real exact = exact_gap(p, spheres);
       const double limit = random.between(-1.0, 1.0);
       const NearestSphere limited = hierarchy.nearest(p, limit);
       if (exact >= limit) {
@@ -160,7 +160,7 @@ TEST(SphereHierarchy, BoundsHoldWhereSpheresAreTied) {
     for (int k = 0; k < 40; ++k) {
       Vector3d p = random.in_box(kAround);
       if (k % 2 == 0) p.head<2>() *= 1e-3;  // near the axis, where all spheres are nearly tied
-      const Digits50 exact = exact_gap(p, spheres);
+      const Real exact = exact_gap(p, spheres);
       const double tolerance = k % 4 < 2 ? 0.0 : 0.01;
       const NearestSphere found = hierarchy.nearest(p, kInfinity, tolerance);
       ASSERT_NO_FATAL_FAILURE(expect_between(found, exact));
@@ -176,7 +176,7 @@ TEST(Clearance, BoundsContainTheExactValue) {
     const Clearance clearance(external);
     for (int k = 0; k < 40; ++k) {
       const Vector3d p = random.in_box(kAround);
-      const Digits50 exact = exact_clearance(p, external);
+      const Real exact = exact_clearance(p, external);
       const ClearanceAt at = clearance(p);
       ASSERT_NO_FATAL_FAILURE(expect_between(at, exact));
       ASSERT_LE(at.upper - at.lower, 1e-12);
@@ -194,7 +194,7 @@ TEST(Clearance, ALimitKeepsTheBoundsTrue) {
     const Clearance clearance(external);
     for (int k = 0; k < 40; ++k) {
       const Vector3d p = random.in_box(kAround);
-      const Digits50 exact = exact_clearance(p, external);
+      const Real exact = exact_clearance(p, external);
       const double limit = random.between(0.0, 1.0);
       const ClearanceAt limited = clearance(p, limit);
       ASSERT_NO_FATAL_FAILURE(expect_between(limited, exact));

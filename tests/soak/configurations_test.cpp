@@ -2,10 +2,11 @@
 // Configurations of a RobotChecker, asked one by one and all at once with every instruction set:
 // among sphere trees against all pairs of spheres in exact arithmetic, in scenes of all kinds of
 // obstacles against the canonical tests of all pairs, one by one.
-#include "tests/collide/trees.h"
 #include "tests/soak/robot_scenes.h"
 #include "tests/soak/scale.h"
 #include "tests/soak/tally.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 

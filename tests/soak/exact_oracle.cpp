@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/soak/exact_oracle.h"
 
-#include "tests/collide/exact_pose.h"
+#include "tests/support/exact/poses.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 

@@ -5,7 +5,7 @@
 
 #include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
-#include "tests/collide/scene_random.h"
+#include "tests/support/random.h"
 
 #include <Eigen/Geometry>
 
@@ -15,9 +15,9 @@
 
 namespace spherule::test {
 
-class SoakRandom : public SceneRandom {
+class SoakRandom : public Random {
  public:
-  using SceneRandom::SceneRandom;
+  using Random::Random;
 
   double unit() { return uniform(0.0, 1.0); }
   bool chance(double share) { return unit() < share; }

@@ -4,7 +4,7 @@
 // Exact oracles of hulls; they share no code with the library.
 
 #include "geometry/triangle_mesh.h"
-#include "tests/spheretree/exact.h"
+#include "tests/support/exact/spheres.h"
 
 #include <array>
 #include <cmath>

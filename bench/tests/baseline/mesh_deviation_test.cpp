@@ -2,7 +2,7 @@
 #include "bench/baseline/mesh_deviation.h"
 
 #include "base/error.h"
-#include "tests/mesh/distance_oracle.h"
+#include "tests/support/exact/shapes.h"
 #include "tests/support/random.h"
 #include "tests/support/zoo.h"
 

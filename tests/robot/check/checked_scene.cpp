@@ -4,8 +4,9 @@
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/robots.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <algorithm>
 #include <utility>
@@ -40,19 +41,19 @@ std::string obstacle_name(std::size_t index) {
   return "obstacle " + std::to_string(index);
 }
 
-Pose random_root(SceneRandom& random, double size) {
+Pose random_root(Random& random, double size) {
   const Pose pose = random.pose(size);
   return Pose(unit_rotation(pose.rotation()), pose.translation());
 }
 
-std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size) {
+std::shared_ptr<const SphereTree> random_tree(Random& random, double size) {
   const int count = random.whole(1, 60);
   std::vector<Sphere> spheres = random_spheres(random, count, size, 0.1 * size);
   return std::make_shared<const SphereTree>(
       build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
 }
 
-RobotModel random_robot_with_trees(SceneRandom& random, double size) {
+RobotModel random_robot_with_trees(Random& random, double size) {
   // One after the other, as the order in which arguments are evaluated is the compiler's.
   const bool branching = random.whole(0, 1) == 1;
   RobotModel robot = random_robot(random, random.whole(1, 8), branching);
@@ -64,7 +65,7 @@ RobotModel random_robot_with_trees(SceneRandom& random, double size) {
   return robot;
 }
 
-std::vector<PlacedTree> random_obstacles(SceneRandom& random) {
+std::vector<PlacedTree> random_obstacles(Random& random) {
   std::vector<PlacedTree> obstacles;
   for (int k = random.whole(1, 3); k > 0; --k) {
     obstacles.push_back({random_tree(random, 1.0), random.pose(2.0)});
@@ -72,7 +73,7 @@ std::vector<PlacedTree> random_obstacles(SceneRandom& random) {
   return obstacles;
 }
 
-std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& robot,
+std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
                                        std::span<const Pose> world_from_link) {
   std::vector<Sphere> spheres;
   for (std::size_t link = 1; link < robot.links().size(); ++link) {

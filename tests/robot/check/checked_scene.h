@@ -4,7 +4,7 @@
 // Random robots with spheres among sphere trees, and what a RobotChecker has to say of them.
 
 #include "robot/check/robot_scene.h"
-#include "tests/collide/scene_random.h"
+#include "tests/support/random.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -56,18 +56,18 @@ class ObstacleChecker : public RobotChecker {
 std::string obstacle_name(std::size_t index);
 
 // Where a robot's root may stand: a pose that a RobotScene takes as it is.
-Pose random_root(SceneRandom& random, double size);
+Pose random_root(Random& random, double size);
 
 // Up to 60 spheres within `size`.
-std::shared_ptr<const SphereTree> random_tree(SceneRandom& random, double size);
+std::shared_ptr<const SphereTree> random_tree(Random& random, double size);
 
-RobotModel random_robot_with_trees(SceneRandom& random, double size);
+RobotModel random_robot_with_trees(Random& random, double size);
 
 // One to three obstacles.
-std::vector<PlacedTree> random_obstacles(SceneRandom& random);
+std::vector<PlacedTree> random_obstacles(Random& random);
 
 // One of the spheres that are not on the first link, in the world; none if there are none.
-std::optional<Sphere> random_sphere_of(SceneRandom& random, const RobotModel& robot,
+std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
                                        std::span<const Pose> world_from_link);
 
 // By the exact queries.

@@ -2,9 +2,10 @@
 // Cells of joint positions in which two bodies are apart, against the gaps of all their spheres.
 
 #include "collide/kernels/plan_trees.h"
-#include "tests/collide/trees.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -26,18 +27,18 @@ std::shared_ptr<const SearchTrees> trees_of(const std::vector<Sphere>& spheres) 
   return std::make_shared<const SearchTrees>(spheres);
 }
 
-FreeCellsSource::Joint random_joint(SceneRandom& random, int position) {
+FreeCellsSource::Joint random_joint(Random& random, int position) {
   FreeCellsSource::Joint joint{random.pose(0.5), random.whole(0, 3) > 0, position};
   const double span = joint.turns ? 1.0 : 0.2;
-  joint.lower = random.uniform(-3.2, 0.0) * span;
-  joint.upper = joint.lower + random.uniform(0.0, 6.4) * span;
+  joint.lower = random.between(-3.2, 0.0) * span;
+  joint.upper = joint.lower + random.between(0.0, 6.4) * span;
   if (random.whole(0, 9) == 0) joint.upper = joint.lower;
   if (random.whole(0, 9) == 0) joint.upper = joint.lower + 12.6 * span;
   return joint;
 }
 
 // One or two joints, on either side.
-FreeCellsSource random_source(SceneRandom& random) {
+FreeCellsSource random_source(Random& random) {
   FreeCellsSource source;
   const int joints = random.whole(1, 2);
   for (int i = 0; i < joints; ++i) {
@@ -92,13 +93,13 @@ bool is_free(const FreeCells& cells, const std::vector<double>& positions) {
 }
 
 // Anywhere in the intervals, or at a border between two cells: there the bound is least slack.
-std::vector<double> random_positions(SceneRandom& random, const FreeCellsSource& source,
+std::vector<double> random_positions(Random& random, const FreeCellsSource& source,
                                      const FreeCells& cells) {
   std::vector<double> positions(2, 0.0);
   for (const FreeCellsSource::Side* side : {&source.first, &source.second}) {
     for (const FreeCellsSource::Joint& joint : side->chain) {
       double& at = positions[static_cast<std::size_t>(joint.position)];
-      at = random.uniform(joint.lower, joint.upper);
+      at = random.between(joint.lower, joint.upper);
       for (const FreeCells::Axis& axis : cells.axes()) {
         if (axis.position != joint.position || axis.scale == 0.0 || random.whole(0, 1) == 0) {
           continue;
@@ -112,7 +113,7 @@ std::vector<double> random_positions(SceneRandom& random, const FreeCellsSource&
 }
 
 TEST(FreeCells, HoldNoPositionsAtWhichSpheresAreNear) {
-  SceneRandom random(seeded(77));
+  Random random(seeded(77));
   int checked = 0;
   int far = 0;
   int far_and_free = 0;
@@ -137,7 +138,7 @@ TEST(FreeCells, HoldNoPositionsAtWhichSpheresAreNear) {
 }
 
 TEST(FreeCells, AreNoneWhereNothingIsFreeOrNothingOrTooMuchMoves) {
-  SceneRandom random(seeded(5));
+  Random random(seeded(5));
   FreeCellsSource source = random_source(random);
   source.first.chain = {random_joint(random, 0)};
   source.second.chain = {random_joint(random, 1), random_joint(random, 2)};
@@ -153,7 +154,7 @@ TEST(FreeCells, AreNoneWhereNothingIsFreeOrNothingOrTooMuchMoves) {
 }
 
 TEST(FreeCells, AreKeptForTheSameTreesAndJoints) {
-  SceneRandom random(seeded(6));
+  Random random(seeded(6));
   internal::FreeCellsCache cache;
   FreeCellsSource source;
   source.first.trees = trees_of({{Eigen::Vector3d::Zero(), 0.1}});

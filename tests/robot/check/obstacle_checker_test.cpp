@@ -2,11 +2,12 @@
 #include "base/error.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ bool expect_answer(const RobotModel& robot, const std::vector<PlacedTree>& obsta
 }
 
 TEST(ObstacleChecker, ClearancesAreThoseOfTheExactQueries) {
-  SceneRandom random(seeded(24));
+  Random random(seeded(24));
   int near = 0;
   int far = 0;
   for (int i = 0; i < scaled(300, 25); ++i) {
@@ -62,9 +63,9 @@ TEST(ObstacleChecker, ClearancesAreThoseOfTheExactQueries) {
         }
       }
       // Anywhere, or as near the gap as single precision cannot tell, or can just.
-      double clearance = random.uniform(0.0, 1.0);
+      double clearance = random.between(0.0, 1.0);
       if (k % 2 == 0 && lower < 1e3) {
-        const double off = std::pow(10.0, random.uniform(-16.0, -4.0));
+        const double off = std::pow(10.0, random.between(-16.0, -4.0));
         clearance = std::max(0.0, lower + (k % 4 == 0 ? off : -off));
       }
       bool expected = false;
@@ -93,16 +94,16 @@ TEST(ObstacleChecker, ClearancesAreThoseOfTheExactQueries) {
 
 // Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
 TEST(ObstacleChecker, AnswersAsTheExactQueriesDoForOddFrames) {
-  SceneRandom random(seeded(23));
+  Random random(seeded(23));
   int hits = 0;
   for (int i = 0; i < scaled(4000, 300); ++i) {
     RobotModel robot("base");
-    const double far = std::pow(10.0, random.uniform(0.0, 8.0));
+    const double far = std::pow(10.0, random.between(0.0, 8.0));
     std::string parent = "base";
     for (int k = 0; k < 6; ++k) {
       Joint joint{.name = "joint_" + std::to_string(k), .type = JointType::kRevolute};
-      const double off = std::pow(10.0, random.uniform(-8.5, -5.5));
-      joint.axis = {off * random.uniform(-1.0, 1.0), off * random.uniform(-1.0, 1.0), -1.0};
+      const double off = std::pow(10.0, random.between(-8.5, -5.5));
+      joint.axis = {off * random.between(-1.0, 1.0), off * random.between(-1.0, 1.0), -1.0};
       joint.parent_from_joint = random.pose(0.3);
       const std::string link = "link_" + std::to_string(k);
       robot.add_link(link, parent, joint);
@@ -118,7 +119,7 @@ TEST(ObstacleChecker, AnswersAsTheExactQueriesDoForOddFrames) {
     std::vector<Pose> world_from_link;
     forward_kinematics(robot, configuration, world_from_link);
     const double gap =
-        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-9.0, -5.0));
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.between(-9.0, -5.0));
     const Eigen::Vector3d away = far * random.point(1.0);
     const Eigen::Vector3d center = world_from_link.back() * sphere.center +
                                    (sphere.radius + 0.2 + gap) * random.point(1.0).normalized();

@@ -7,10 +7,11 @@
 #include "robot/check/body_pairs.h"
 #include "robot/check/plan_source.h"
 #include "robot/model/joint_positions.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/path_bounds.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -123,7 +124,7 @@ int check_bounds(const internal::BodyPairs& pairs, InstructionSet set,
 }
 
 TEST(PlanBounds, AreThoseOfTheFormula) {
-  SceneRandom random(391);
+  Random random(391);
   int compared = 0;
   const int cases = effort(300, 40);
   for (int n = 0; n < cases; ++n) {
@@ -133,7 +134,7 @@ TEST(PlanBounds, AreThoseOfTheFormula) {
     std::vector<internal::CheckedPair> tested;
     for (int link = 0; link < static_cast<int>(robot.links().size()); ++link) {
       pieces.push_back(
-          {.tree = one_sphere_tree(random.point(0.5), random.uniform(0.1, 1.0)), .link = link});
+          {.tree = one_sphere_tree(random.point(0.5), random.between(0.1, 1.0)), .link = link});
       for (int other = 0; other < link; ++other) tested.push_back({link, other, false});
     }
     const std::size_t count = tested.size();

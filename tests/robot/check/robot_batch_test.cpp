@@ -4,9 +4,10 @@
 
 #include "base/error.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,7 @@ std::vector<std::uint8_t> answers(const RobotModel& robot, const std::vector<Pla
 // Many small spheres in the way of a search make it run out of room; a block with numbers far out
 // of range among others is answered as well.
 TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
-  SceneRandom random(43);
+  Random random(43);
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   robot.attach("arm", std::make_shared<const SphereTree>(

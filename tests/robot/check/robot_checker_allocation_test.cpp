@@ -3,10 +3,10 @@
 
 #include "robot/check/robot_scene.h"
 #include "spheretree/build.h"
-#include "tests/collide/counting_new.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/robots.h"
+#include "tests/support/counting_new.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace spherule::test {
 namespace {
 
 TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
-  SceneRandom random(91);
+  Random random(91);
   RobotModel robot = random_robot(random, 6, false);
   const auto spheres = [&](int count, double size) {
     return std::make_shared<const SphereTree>(

@@ -6,12 +6,13 @@
 #include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_checker.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -42,14 +43,14 @@ struct Counts {
 };
 
 TEST(RobotCheckerEdge, WhatIsProvedFreeIsFree) {
-  SceneRandom random(seeded(81));
+  Random random(seeded(81));
   Counts counts;
   for (int n = 0; n < scaled(60, 12); ++n) {
     const auto [scene, oracle] = random_scene(random);
     const RobotChecker checker = scene.snapshot();
     RobotChecker::Scratch scratch(checker);
     for (int i = 0; i < 8; ++i) {
-      const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
+      const double size = std::pow(10.0, random.between(-3.0, 1.0));
       const Configuration from = random_configuration(random, oracle.robot, 3.0);
       if (!checker.check_config(from, scratch)) continue;
       Configuration to = random_configuration(random, oracle.robot, size);
@@ -79,7 +80,7 @@ std::shared_ptr<const SphereTree> wall() {
 
 // The wall is on a link that moves, and a drill on another one: nothing stands still.
 TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
-  SceneRandom random(seeded(82));
+  Random random(seeded(82));
   RobotModel robot("base");
   robot.add_link("door", "base",
                  {.type = JointType::kPrismatic, .axis = {1, 0, 0}, .lower = -99, .upper = 99});
@@ -92,11 +93,11 @@ TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
   RobotChecker::Scratch scratch(checker);
   for (int i = 0; i < scaled(200, 20); ++i) {
     const double side = random.whole(0, 1) == 0 ? 1.0 : -1.0;
-    const Configuration from = {random.uniform(-30.0, 30.0), 0.0, random.uniform(-9.0, 9.0)};
-    Configuration to = {random.uniform(-30.0, 30.0), 0.0, random.uniform(-9.0, 9.0)};
+    const Configuration from = {random.between(-30.0, 30.0), 0.0, random.between(-9.0, 9.0)};
+    Configuration to = {random.between(-30.0, 30.0), 0.0, random.between(-9.0, 9.0)};
     Configuration start = from;
-    start[1] = from[0] - side * random.uniform(0.05, 40.0);
-    to[1] = to[0] + side * random.uniform(0.05, 40.0);
+    start[1] = from[0] - side * random.between(0.05, 40.0);
+    to[1] = to[0] + side * random.between(0.05, 40.0);
     const EdgeResult result = checker.check_edge(start, to, scratch, {.first = true});
     EXPECT_NE(result.verdict, Verdict::kFree);
     expect_so(checker, start, to, result, 200);
@@ -107,11 +108,11 @@ TEST(RobotCheckerEdge, AWallOnALinkIsNotPassed) {
 
 // A blade that turns by many turns through a thin plate, which hangs on the other side of the root.
 TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
-  SceneRandom random(seeded(83));
+  Random random(seeded(83));
   for (int i = 0; i < scaled(150, 30); ++i) {
-    const double angle = random.uniform(-3.0, 3.0);
-    const double size = std::pow(10.0, random.uniform(-5.0, -2.0));
-    const double radius = random.uniform(0.2, 5.0);
+    const double angle = random.between(-3.0, 3.0);
+    const double size = std::pow(10.0, random.between(-5.0, -2.0));
+    const double radius = random.between(0.2, 5.0);
     const bool intersects = random.whole(0, 1) == 0;
     RobotModel robot("base");
     robot.add_link("left", "base", {.type = JointType::kContinuous});
@@ -123,8 +124,8 @@ TEST(RobotCheckerEdge, ATurningBladeMeetsAPlate) {
     const RobotChecker checker = RobotScene(robot).snapshot();
     RobotChecker::Scratch scratch(checker);
     // Both turn, one against the other by more than a turn.
-    const double together = random.uniform(-20.0, 20.0);
-    const Configuration from = {0.0, random.uniform(0.3, 2.9)};
+    const double together = random.between(-20.0, 20.0);
+    const Configuration from = {0.0, random.between(0.3, 2.9)};
     const Configuration to = {together, from[1] + together + (i % 2 == 0 ? 6.3 : -6.3)};
     const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
     EXPECT_EQ(result.verdict == Verdict::kFree, !intersects) << size << ' ' << radius;
@@ -298,7 +299,7 @@ TEST(RobotCheckerEdge, StopsAtSolidsOfEveryKind) {
 }
 
 TEST(RobotCheckerEdge, ManyAnswerAsOne) {
-  SceneRandom random(seeded(84));
+  Random random(seeded(84));
   const auto [scene, oracle] = random_scene(random);
   const RobotChecker checker = scene.snapshot();
   std::vector<RobotChecker::Scratch> scratches;

@@ -6,11 +6,12 @@
 #include "base/error.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ namespace {
 constexpr long double kSlack = 1e-12L;
 
 TEST(RobotChecker, AnswersAsAllPairsOfSpheresDo) {
-  SceneRandom random(seeded(71));
+  Random random(seeded(71));
   int hits = 0;
   int free = 0;
   int self_hits = 0;
@@ -58,7 +59,7 @@ TEST(RobotChecker, AnswersAsAllPairsOfSpheresDo) {
 
 // The padding is such that the nearest pair just touches, or just not.
 TEST(RobotChecker, PaddingIsGrownSpheresToTheLastDigits) {
-  SceneRandom random(seeded(72));
+  Random random(seeded(72));
   int touching = 0;
   int apart = 0;
   for (int n = 0; n < scaled(200, 40); ++n) {
@@ -94,7 +95,7 @@ TEST(RobotChecker, PaddingIsGrownSpheresToTheLastDigits) {
 }
 
 TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
-  SceneRandom random(seeded(73));
+  Random random(seeded(73));
   int above_zero = 0;
   for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
@@ -132,7 +133,7 @@ TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
 }
 
 TEST(RobotChecker, ExplainsEveryPairThatTouches) {
-  SceneRandom random(seeded(74));
+  Random random(seeded(74));
   int contacts = 0;
   for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
@@ -187,7 +188,7 @@ TEST(RobotChecker, ExplainsEveryPairThatTouches) {
 
 // An attached object is tested as the same tree on a link of its own that stands in its link.
 TEST(RobotChecker, AttachedObjectsAreLinks) {
-  SceneRandom random(seeded(75));
+  Random random(seeded(75));
   int hits = 0;
   for (int n = 0; n < scaled(150, 20); ++n) {
     RobotModel robot = random_robot(random, 4, false);
@@ -249,7 +250,7 @@ TEST(RobotChecker, AttachedObjectsAreLinks) {
 }
 
 TEST(RobotChecker, ManyAndThreadsAnswerAsOne) {
-  SceneRandom random(seeded(76));
+  Random random(seeded(76));
   for (int n = 0; n < scaled(20, 4); ++n) {
     const auto [scene, oracle] = random_scene(random);
     for (const bool enforce : {false, true}) {

@@ -7,12 +7,12 @@
 #include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/solid_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ struct Thing {
 // A robot of such bodies, among an obstacle of every kind.
 class ConfirmedScene {
  public:
-  explicit ConfirmedScene(SceneRandom& random)
+  explicit ConfirmedScene(Random& random)
       : robot_(make_robot(random, bodies_)), allowed_(robot_), scene_(robot_) {
     for (std::size_t link = 0; link < bodies_.size(); ++link) {
       const std::string& name = robot_.links()[link].name;
@@ -126,16 +126,16 @@ class ConfirmedScene {
     double inflation;
   };
 
-  static Thing random_thing(SceneRandom& random, double size) {
+  static Thing random_thing(Random& random, double size) {
     if (random.whole(0, 3) == 0) return {nullptr, {random.point(0.05), 0.3 * size}};
-    return {covered_tetrahedron(random, random.uniform(0.5, 1.0) * size)};
+    return {covered_tetrahedron(random, random.between(0.5, 1.0) * size)};
   }
 
-  RobotModel make_robot(SceneRandom& random, std::vector<Thing>& bodies) {
+  RobotModel make_robot(Random& random, std::vector<Thing>& bodies) {
     RobotModel robot = random_robot(random, random.whole(3, 6), false);
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
-      Thing body = random_thing(random, random.uniform(0.02, 0.3));
-      if (random.whole(0, 2) == 0) body.padding = random.uniform(0.0, 0.05);
+      Thing body = random_thing(random, random.between(0.02, 0.3));
+      if (random.whole(0, 2) == 0) body.padding = random.between(0.0, 0.05);
       robot.attach(robot.links()[link].name, body.tree());
       if (body.mesh) meshes_.push_back(body.mesh);
       bodies.push_back(std::move(body));
@@ -161,7 +161,7 @@ class ConfirmedScene {
 constexpr double kUnclear = 1e-3;
 
 TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
-  SceneRandom random(seeded(171));
+  Random random(seeded(171));
   int hits = 0, free = 0, alarms = 0;
   for (int i = 0; i < scaled(60, 6); ++i) {
     const ConfirmedScene scene(random);
@@ -201,7 +201,7 @@ TEST(RobotConfirmed, ConfigurationsAreJudgedOnTheMeshes) {
 
 TEST(RobotConfirmed, MotionsAreProvedOnTheMeshes) {
   const std::vector<InstructionSet> sets = instruction_sets();
-  SceneRandom random(seeded(172));
+  Random random(seeded(172));
   int free = 0, hits = 0, unknown = 0, alarms = 0;
   for (int i = 0; i < scaled(60, 8); ++i) {
     const ConfirmedScene scene(random);
@@ -211,7 +211,7 @@ TEST(RobotConfirmed, MotionsAreProvedOnTheMeshes) {
     for (int k = 0; k < 6; ++k) {
       const std::vector<double> from = random_configuration(random, scene.robot(), 3.0);
       std::vector<double> to =
-          random_configuration(random, scene.robot(), random.uniform(0.0, 1.0));
+          random_configuration(random, scene.robot(), random.between(0.0, 1.0));
       for (std::size_t v = 0; v < to.size(); ++v) to[v] += from[v];
       if (k % 2 == 0 && scene.gap(from) < 0.0) continue;
       const EdgeResult result =

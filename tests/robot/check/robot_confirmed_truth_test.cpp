@@ -6,12 +6,12 @@
 #include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/voxel_solids.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ double gap_between(const Shape& a, const Pose& world_from_a, const Shape& b,
 // object, and obstacles of the kinds for which an exact distance is known.
 class VoxelScene {
  public:
-  VoxelScene(SceneRandom& random, int joints) : robot_(make_robot(random, joints)), scene_(robot_) {
+  VoxelScene(Random& random, int joints) : robot_(make_robot(random, joints)), scene_(robot_) {
     for (std::size_t link = 0; link < bodies_.size(); ++link) {
       names_.push_back(robot_.links()[link].name);
       if (bodies_[link].padding > 0.0) scene_.set_padding(names_[link], bodies_[link].padding);
@@ -134,7 +134,7 @@ class VoxelScene {
   static constexpr double kFloor = -1.2;
   static constexpr double kBetween = 0.03;
 
-  Shape random_shape(SceneRandom& random, double cell_size) {
+  Shape random_shape(Random& random, double cell_size) {
     if (random.whole(0, 4) == 0) return {nullptr, 0.8 * cell_size};
     const int cells = cell_size > 0.3 ? 1 : random.whole(2, 7);
     const auto voxels = std::make_shared<const VoxelSolid>(random, cells, cell_size);
@@ -142,7 +142,7 @@ class VoxelScene {
     return {voxels};
   }
 
-  RobotModel make_robot(SceneRandom& random, int joints) {
+  RobotModel make_robot(Random& random, int joints) {
     RobotModel robot("link 0");
     for (int i = 0; i < joints; ++i) {
       Joint joint;
@@ -155,8 +155,8 @@ class VoxelScene {
       robot.add_link("link " + std::to_string(i + 1), "link " + std::to_string(i), joint);
     }
     for (int i = 0; i <= joints; ++i) {
-      Shape body = random_shape(random, random.uniform(0.03, 0.09));
-      if (random.whole(0, 2) == 0) body.padding = random.uniform(0.0, 0.03);
+      Shape body = random_shape(random, random.between(0.03, 0.09));
+      if (random.whole(0, 2) == 0) body.padding = random.between(0.0, 0.03);
       robot.attach("link " + std::to_string(i), body.tree());
       bodies_.push_back(std::move(body));
     }
@@ -178,7 +178,7 @@ class VoxelScene {
 constexpr double kUnclear = 1e-6;
 
 TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
-  SceneRandom random(seeded(271));
+  Random random(seeded(271));
   int counts[2] = {}, alarms = 0;
   for (int i = 0; i < scaled(60, 12); ++i) {
     const VoxelScene scene(random, random.whole(3, 6));
@@ -209,7 +209,7 @@ TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
 }
 
 TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
-  SceneRandom random(seeded(272));
+  Random random(seeded(272));
   int free = 0, hits = 0, unknown = 0, alarms = 0;
   for (int i = 0; i < scaled(60, 12); ++i) {
     const VoxelScene scene(random, random.whole(3, 6));
@@ -219,7 +219,7 @@ TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
     for (int k = 0; k < 8; ++k) {
       const std::vector<double> from = random_configuration(random, scene.robot(), 1.5);
       std::vector<double> to =
-          random_configuration(random, scene.robot(), random.uniform(0.0, 0.6));
+          random_configuration(random, scene.robot(), random.between(0.0, 0.6));
       for (std::size_t v = 0; v < to.size(); ++v) to[v] += from[v];
       if (k % 4 != 0 && scene.gap(from) < 0.0) continue;
       const EdgeResult result = checker.check_edge(from, to, scratch, {.first = k % 2 == 0});
@@ -252,7 +252,7 @@ TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
 
 // No surfaces touch, in configurations and all along a motion.
 TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
-  SceneRandom random(seeded(274));
+  Random random(seeded(274));
   const VoxelSolid small(random, 4, 0.05), large(random, 1, 2.0);
   const std::vector<ObstacleShape> inside = {cover_of(small.covered()),
                                              std::make_shared<const SolidMesh>(small.mesh()),
@@ -286,7 +286,7 @@ TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
 
 // Clearance and padding together may be more than a query of two meshes takes.
 TEST(RobotConfirmedTruth, TheLargestClearanceIsAccepted) {
-  SceneRandom random(seeded(273));
+  Random random(seeded(273));
   const VoxelSolid body(random, 4, 0.1);
   RobotModel robot("base");
   robot.add_link("link", "base", {.name = "joint", .type = JointType::kContinuous});

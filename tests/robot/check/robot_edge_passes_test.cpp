@@ -4,10 +4,11 @@
 
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -55,11 +56,11 @@ struct SphereRobot {
   std::vector<Sphere> spheres;  // of links
 };
 
-SphereRobot random_sphere_robot(SceneRandom& random, bool branching) {
+SphereRobot random_sphere_robot(Random& random, bool branching) {
   SphereRobot result{random_robot(random, random.whole(2, 7), branching), {}};
   if (random.whole(0, 3) == 0) add_random_mimics(random, result.model, 1.0);
   for (const Link& link : std::vector<Link>(result.model.links())) {
-    result.spheres.push_back({random.point(0.5), std::pow(10.0, random.uniform(-4.0, -1.0))});
+    result.spheres.push_back({random.point(0.5), std::pow(10.0, random.between(-4.0, -1.0))});
     result.model.attach(
         link.name, one_sphere_tree(result.spheres.back().center, result.spheres.back().radius));
   }
@@ -83,18 +84,18 @@ struct Move {
 };
 
 // Of up to several turns.
-Move random_move(SceneRandom& random, const RobotModel& robot) {
+Move random_move(Random& random, const RobotModel& robot) {
   Move move{random_configuration(random, robot, 3.0),
-            random_configuration(random, robot, std::pow(10.0, random.uniform(-2.0, 1.3))),
-            random.uniform(0.1, 0.9)};
+            random_configuration(random, robot, std::pow(10.0, random.between(-2.0, 1.3))),
+            random.between(0.1, 0.9)};
   for (std::size_t i = 0; i < move.to.size(); ++i) move.to[i] += move.from[i];
   return move;
 }
 
 // Of the sphere that is told it is `gap` away there.
-Static solid_beside(SceneRandom& random, const Vector3d& center, double radius, double gap) {
-  const double thin = std::pow(10.0, random.uniform(-5.0, -1.0));
-  const double large = random.uniform(0.05, 0.5);
+Static solid_beside(Random& random, const Vector3d& center, double radius, double gap) {
+  const double thin = std::pow(10.0, random.between(-5.0, -1.0));
+  const double large = random.between(0.05, 0.5);
   const Primitive solids[] = {Box{{large, large, thin}}, SolidSphere{thin}, Cylinder{large, thin},
                               Capsule{thin, large}, HalfSpace{}};
   const Primitive solid = solids[random.whole(0, 4)];
@@ -140,7 +141,7 @@ double gap_to(const SphereRobot& robot, const std::vector<Static>& solids,
 }
 
 TEST(RobotEdgePasses, NoSolidIsPassedThrough) {
-  SceneRandom random(311);
+  Random random(311);
   int found = 0;
   const int cases = effort(4000, 400);
   for (int n = 0; n < cases; ++n) {
@@ -151,7 +152,7 @@ TEST(RobotEdgePasses, NoSolidIsPassedThrough) {
     const Vector3d center = placed(robot, on_the_way(move.from, move.to, move.between))[last];
     const double radius = robot.spheres[last].radius;
     const std::vector<Static> solids = {
-        solid_beside(random, center, radius, -radius * random.uniform(1e-6, 1.0))};
+        solid_beside(random, center, radius, -radius * random.between(1e-6, 1.0))};
     const RobotChecker checker = checker_of(robot, solids);
     RobotChecker::Scratch scratch(checker);
     const bool first = n % 2 == 0;
@@ -179,7 +180,7 @@ std::set<int> joints_above(const RobotModel& robot, std::size_t link) {
 }
 
 TEST(RobotEdgePasses, NoLinkIsPassedThrough) {
-  SceneRandom random(312);
+  Random random(312);
   int tested = 0;
   int found = 0;
   const int cases = effort(3000, 300);
@@ -194,8 +195,8 @@ TEST(RobotEdgePasses, NoLinkIsPassedThrough) {
     if (joints_above(robot.model, last) == joints_above(robot.model, other)) continue;
     ++tested;
     // In the last link's sphere, carried by another link.
-    const double size = std::pow(10.0, random.uniform(-5.0, -1.0));
-    const double apart = (size + robot.spheres[last].radius) * random.uniform(0.0, 0.9999);
+    const double size = std::pow(10.0, random.between(-5.0, -1.0));
+    const double apart = (size + robot.spheres[last].radius) * random.between(0.0, 0.9999);
     std::vector<Pose> poses;
     forward_kinematics(robot.model, between, poses);
     const Vector3d beside = centers[last] + apart * random.point(1.0).normalized();
@@ -217,7 +218,7 @@ TEST(RobotEdgePasses, NoLinkIsPassedThrough) {
 }
 
 TEST(RobotEdgePasses, WhatIsProvedAmongSolidsIsFree) {
-  SceneRandom random(313);
+  Random random(313);
   int free = 0;
   int unknown = 0;
   const int cases = effort(600, 60);
@@ -226,12 +227,12 @@ TEST(RobotEdgePasses, WhatIsProvedAmongSolidsIsFree) {
     const Move move = random_move(random, robot.model);
     std::vector<Static> solids;
     for (int i = 0; i < 3; ++i) {
-      const double t = random.uniform(0.0, 1.0);
+      const double t = random.between(0.0, 1.0);
       const std::size_t link =
           static_cast<std::size_t>(random.whole(0, static_cast<int>(robot.spheres.size()) - 1));
       const Configuration at = on_the_way(move.from, move.to, t);
       solids.push_back(solid_beside(random, placed(robot, at)[link], robot.spheres[link].radius,
-                                    std::pow(10.0, random.uniform(-4.0, 0.0))));
+                                    std::pow(10.0, random.between(-4.0, 0.0))));
     }
     const RobotChecker checker = checker_of(robot, solids);
     RobotChecker::Scratch scratch(checker);

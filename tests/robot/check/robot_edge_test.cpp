@@ -6,12 +6,13 @@
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ void expect_true(const ObstacleChecker& checker, const std::vector<double>& from
 // Motions that follow each other in steps of any size, beside what was found near: what the scratch
 // remembers proves many of them, and none that is not free.
 TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
-  SceneRandom random(seeded(55));
+  Random random(seeded(55));
   int free = 0;
   int remembered = 0;
   int hits = 0;
@@ -50,7 +51,7 @@ TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
     const std::optional<Sphere> near = random_sphere_of(random, robot, links);
     if (!near) continue;
     // A sphere that the path begins beside.
-    const double gap = std::pow(10.0, random.uniform(-6.0, -1.0));
+    const double gap = std::pow(10.0, random.between(-6.0, -1.0));
     const Eigen::Vector3d center =
         near->center + (near->radius + 0.05 + gap) * random.point(1.0).normalized();
     const ObstacleChecker checker(robot, {{one_sphere_tree(center, 0.05), Pose()}});
@@ -59,12 +60,12 @@ TEST(RobotEdge, WhatIsProvedFreeAlongAPathIsFree) {
     std::vector<double> heading;
     for (int k = 0; k < 60; ++k) {
       if (k % 15 == 0) {
-        step = std::pow(10.0, random.uniform(-5.0, -1.5));
+        step = std::pow(10.0, random.between(-5.0, -1.5));
         heading = random_configuration(random, robot, step);
       }
       std::vector<double> to = at;
       for (std::size_t v = 0; v < to.size(); ++v) {
-        to[v] += heading[v] + 0.1 * step * random.uniform(-1.0, 1.0);
+        to[v] += heading[v] + 0.1 * step * random.between(-1.0, 1.0);
       }
       const EdgeResult result = checker.check_edge(at, to, scratch, {.first = k % 7 == 0});
       expect_true(checker, at, to, result, effort(100, 30));
@@ -91,19 +92,19 @@ RobotModel long_arm() {
 }
 
 TEST(RobotEdge, NothingIsPassedThrough) {
-  SceneRandom random(seeded(52));
+  Random random(seeded(52));
   const RobotModel robot = long_arm();
   for (int i = 0; i < scaled(500, 50); ++i) {
-    const double angle = random.uniform(-40.0, 40.0);
-    const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
+    const double angle = random.between(-40.0, 40.0);
+    const double size = std::pow(10.0, random.between(-6.0, -2.0));
     // Just in the way, or just beside it.
     const double beside =
-        (1e-3 + size) * (random.whole(0, 1) == 0 ? random.uniform(0.0, 0.999) : 1.3);
+        (1e-3 + size) * (random.whole(0, 1) == 0 ? random.between(0.0, 0.999) : 1.3);
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), beside);
     const ObstacleChecker checker(robot, {{one_sphere_tree(center, size), Pose()}});
     RobotChecker::Scratch scratch(checker);
-    const double before = random.uniform(0.1, 50.0);
-    const double after = random.uniform(0.1, 50.0);
+    const double before = random.between(0.1, 50.0);
+    const double after = random.between(0.1, 50.0);
     const std::vector<double> from = {angle - before};
     const std::vector<double> to = {angle + after};
     const EdgeRequest request{.resolution = 1e-4, .first = i % 2 == 0};
@@ -122,7 +123,7 @@ TEST(RobotEdge, NothingIsPassedThrough) {
 
 // A shift and a turn of bodies on bodies, at a wall of spheres with no gap.
 TEST(RobotEdge, AWallIsNotPassed) {
-  SceneRandom random(seeded(53));
+  Random random(seeded(53));
   std::vector<Sphere> wall;
   for (int i = -20; i <= 20; ++i) {
     for (int k = -20; k <= 20; ++k) wall.push_back({{1.0, 0.02 * i, 0.02 * k}, 0.015});
@@ -135,12 +136,12 @@ TEST(RobotEdge, AWallIsNotPassed) {
                    {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
     robot.add_link("drill", "slide",
                    {.name = "drill", .type = JointType::kRevolute, .axis = {1, 0, 0}});
-    const Eigen::Vector3d offset(0.0, random.uniform(0.0, 0.2), random.uniform(0.0, 0.2));
+    const Eigen::Vector3d offset(0.0, random.between(0.0, 0.2), random.between(0.0, 0.2));
     robot.attach("drill", one_sphere_tree(offset, 1e-3));
     const ObstacleChecker checker(robot, obstacles);
     RobotChecker::Scratch scratch(checker);
-    const std::vector<double> from = {random.uniform(-60.0, 0.9), random.uniform(-9.0, 9.0)};
-    const std::vector<double> to = {random.uniform(1.1, 60.0), random.uniform(-9.0, 9.0)};
+    const std::vector<double> from = {random.between(-60.0, 0.9), random.between(-9.0, 9.0)};
+    const std::vector<double> to = {random.between(1.1, 60.0), random.between(-9.0, 9.0)};
     const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
     EXPECT_NE(result.verdict, Verdict::kFree);
     expect_true(checker, from, to, result, 300);

@@ -4,13 +4,13 @@
 #include "base/error.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/exact_pose.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/exact/poses.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -170,7 +170,7 @@ void expect_explained(const Scene& scene, const ObstacleChecker& checker,
 // Robots with links that stand and links with several trees; some pairs are not tested; some
 // positions are far out of the usual range.
 TEST(RobotExplain, TellsWhatTouchesWhat) {
-  SceneRandom random(seeded(81));
+  Random random(seeded(81));
   Count count;
   for (int i = 0; i < scaled(600, 40); ++i) {
     Scene scene{.robot = random_robot_with_trees(random, 0.3)};
@@ -201,7 +201,7 @@ TEST(RobotExplain, TellsWhatTouchesWhat) {
 
 // A sphere of the robot is met by one at a distance that rounding can just tell from contact.
 TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
-  SceneRandom random(seeded(82));
+  Random random(seeded(82));
   Count count;
   for (int i = 0; i < scaled(800, 100); ++i) {
     Scene scene{.robot = random_robot_with_trees(random, 0.3)};
@@ -213,7 +213,7 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
     const std::optional<Sphere> sphere = random_sphere_of(random, scene.robot, poses);
     if (!sphere) continue;
     const double gap =
-        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.uniform(-17.0, -5.0));
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.between(-17.0, -5.0));
     const Eigen::Vector3d center =
         sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
     scene.obstacles = {{one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation(center)}};
@@ -228,7 +228,7 @@ TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
 // Along a path, so that the scratch remembers contacts and clearances; a link has a tree without a
 // mesh beside one with, and an obstacle has none.
 TEST(RobotExplain, TellsWhatMeshesTouch) {
-  SceneRandom random(seeded(83));
+  Random random(seeded(83));
   Count count;
   for (int i = 0; i < scaled(120, 10); ++i) {
     Scene scene{.robot = random_robot(random, random.whole(1, 6), i % 2 == 1)};
@@ -238,12 +238,12 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
       return cover_of(scene.options.meshes.back());
     };
     for (const Link& link : std::vector<Link>(scene.robot.links())) {
-      scene.robot.attach(link.name, covered(random.uniform(0.05, 0.4)));
+      scene.robot.attach(link.name, covered(random.between(0.05, 0.4)));
       if (random.whole(0, 3) == 0) scene.robot.attach(link.name, random_tree(random, 0.1));
     }
     for (int k = 0; k < 2; ++k) {
       const double size = k == 0 ? 4.0 : 1.5;  // large enough to hold links
-      scene.obstacles.push_back({covered(random.uniform(0.05, size)), random.pose(1.5)});
+      scene.obstacles.push_back({covered(random.between(0.05, size)), random.pose(1.5)});
     }
     scene.obstacles.push_back({random_tree(random, 0.2), random.pose(1.5)});
     const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);

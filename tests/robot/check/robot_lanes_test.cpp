@@ -5,11 +5,12 @@
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +23,8 @@
 namespace spherule::test::robot_lanes_test {
 namespace {
 
-Primitive random_primitive(SceneRandom& random, double size) {
-  const auto length = [&] { return random.uniform(0.01, 1.0) * size; };
+Primitive random_primitive(Random& random, double size) {
+  const auto length = [&] { return random.between(0.01, 1.0) * size; };
   switch (random.whole(0, 4)) {
     case 0:
       return Box{{length(), length(), length()}};
@@ -39,7 +40,7 @@ Primitive random_primitive(SceneRandom& random, double size) {
 }
 
 // A random scene among solids of every kind; some are tiny, some huge.
-RandomScene scene_with_solids(SceneRandom& random) {
+RandomScene scene_with_solids(Random& random) {
   RandomScene result = random_scene(random);
   const int count = random.whole(0, 5);
   for (int i = 0; i < count; ++i) {
@@ -103,7 +104,7 @@ void expect_same_answers(Checkers& checkers, const std::vector<std::vector<doubl
 }
 
 TEST(RobotLanes, VerdictsAreThoseOfTheCanonicalTestsToTheLastDigit) {
-  SceneRandom random(seeded(911));
+  Random random(seeded(911));
   int close = 0;
   for (int n = 0; n < scaled(120, 12); ++n) {
     const auto [scene, oracle] = scene_with_solids(random);
@@ -133,7 +134,7 @@ TEST(RobotLanes, VerdictsAreThoseOfTheCanonicalTestsToTheLastDigit) {
 // What is called free has no contact at many configurations, on any instruction set; where a
 // contact is reported there is one; and no two instruction sets contradict each other.
 TEST(RobotLanes, MotionsAreProvedOnEveryInstructionSet) {
-  SceneRandom random(seeded(912));
+  Random random(seeded(912));
   int free = 0;
   int hits = 0;
   for (int n = 0; n < scaled(100, 10); ++n) {
@@ -142,8 +143,8 @@ TEST(RobotLanes, MotionsAreProvedOnEveryInstructionSet) {
     for (int i = 0; i < 4; ++i) {
       const std::vector<double> from = random_configuration(random, oracle.robot, 3.0);
       std::vector<double> to = from;
-      const double length = std::exp(random.uniform(std::log(1e-3), std::log(3.0)));
-      for (double& position : to) position += random.uniform(-length, length);
+      const double length = std::exp(random.between(std::log(1e-3), std::log(3.0)));
+      for (double& position : to) position += random.between(-length, length);
       const EdgeRequest request{.first = random.whole(0, 9) < 3};
       for (std::size_t k = 0; k < checkers.count(); ++k) {
         const EdgeResult result =
@@ -239,9 +240,9 @@ TEST(RobotLanes, RigidPairsAtRoundingsDistance) {
   allowed.forbid("arm", "tip");
   scene.set_allowed_collisions(allowed);
   Checkers checkers(scene);
-  SceneRandom random(seeded(913));
+  Random random(seeded(913));
   std::vector<std::vector<double>> tested;
-  for (int i = 0; i < 50; ++i) tested.push_back({random.uniform(-3.0, 3.0)});
+  for (int i = 0; i < 50; ++i) tested.push_back({random.between(-3.0, 3.0)});
   expect_same_answers(checkers, tested);
   const EdgeResult result =
       checkers.checker(0).check_edge(tested[0], tested[1], checkers.scratch(0));

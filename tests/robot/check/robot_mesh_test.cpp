@@ -4,12 +4,12 @@
 
 #include "base/error.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ void expect_verdicts_on_every_set(const RobotModel& robot, const std::vector<Pla
 }
 
 TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
-  SceneRandom random(seeded(61));
+  Random random(seeded(61));
   int hits = 0;
   int removed = 0;
   int free = 0;
@@ -52,7 +52,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
     ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
     std::vector<std::pair<std::size_t, std::shared_ptr<const CoveredMesh>>> bodies;
     for (std::size_t link = 0; link < robot.links().size(); ++link) {
-      const auto mesh = covered_tetrahedron(random, random.uniform(0.05, 0.4));
+      const auto mesh = covered_tetrahedron(random, random.between(0.05, 0.4));
       robot.attach(robot.links()[link].name, cover_of(mesh));
       options.meshes.push_back(mesh);
       bodies.emplace_back(link, mesh);
@@ -60,7 +60,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
     std::vector<PlacedTree> obstacles;
     std::vector<std::shared_ptr<const CoveredMesh>> obstacle_meshes;
     for (int k = 0; k < 3; ++k) {
-      const auto mesh = covered_tetrahedron(random, random.uniform(0.05, 1.5));
+      const auto mesh = covered_tetrahedron(random, random.between(0.05, 1.5));
       obstacles.push_back({cover_of(mesh), random.pose(1.5)});
       options.meshes.push_back(mesh);
       obstacle_meshes.push_back(mesh);
@@ -93,7 +93,7 @@ TEST(RobotMesh, AnswersAsTheCoveredMeshesDo) {
 }
 
 // Up to 40 triangles within `size`, or a closed tetrahedron.
-std::shared_ptr<const CoveredMesh> random_body(SceneRandom& random, double size) {
+std::shared_ptr<const CoveredMesh> random_body(Random& random, double size) {
   if (random.whole(0, 2) == 0) return covered_tetrahedron(random, size);
   TriangleMesh mesh;
   for (int i = random.whole(1, 40); i > 0; --i) {
@@ -115,7 +115,7 @@ bool is_untested(const ObstacleOptions& options, std::size_t link, std::size_t o
 // One side of every pair is a mesh, the other one spheres: those of the obstacles, but for every
 // fifth robot.
 TEST(RobotMesh, AnswersAsMeshesAmongSpheresDoOnEveryInstructionSet) {
-  SceneRandom random(seeded(71));
+  Random random(seeded(71));
   int hits = 0;
   int removed = 0;
   int free = 0;
@@ -187,9 +187,8 @@ Meshes some_of(const Meshes& meshes, int which) {
 }
 
 // Sometimes another query: of a block, a motion, or a clearance.
-void query_in_between(SceneRandom& random, const ObstacleChecker& checker,
-                      const std::vector<double>& at, const std::vector<double>& elsewhere,
-                      RobotChecker::Scratch& scratch) {
+void query_in_between(Random& random, const ObstacleChecker& checker, const std::vector<double>& at,
+                      const std::vector<double>& elsewhere, RobotChecker::Scratch& scratch) {
   std::uint8_t verdict = 0;
   switch (random.whole(0, 40)) {
     case 0:
@@ -199,7 +198,7 @@ void query_in_between(SceneRandom& random, const ObstacleChecker& checker,
       checker.check_edge(elsewhere, at, scratch, {.resolution = 0.05});
       break;
     case 2:
-      checker.within(at, random.uniform(0.0, 0.1), scratch);
+      checker.within(at, random.between(0.0, 0.1), scratch);
       break;
     default:
       break;
@@ -209,7 +208,7 @@ void query_in_between(SceneRandom& random, const ObstacleChecker& checker,
 // Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
 // neither of those before, nor of a block or a motion that was requested in between.
 TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
-  SceneRandom random(seeded(63));
+  Random random(seeded(63));
   int hits = 0;
   int free = 0;
   int changes = 0;
@@ -220,7 +219,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
     // What stands with the root would touch always or never.
     for (const Joint& joint : std::vector<Joint>(robot.joints())) {
       const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
-      meshes.push_back(covered_tetrahedron(random, random.uniform(0.05, 0.4)));
+      meshes.push_back(covered_tetrahedron(random, random.between(0.05, 0.4)));
       robot.attach(std::string(link.name), cover_of(meshes.back()));
     }
     std::vector<PlacedTree> obstacles;
@@ -229,7 +228,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
     std::vector<Pose> links;
     forward_kinematics(robot, home, links, options.world_from_root);
     for (int k = 0; k < 2; ++k) {
-      meshes.push_back(covered_tetrahedron(random, random.uniform(0.05, 0.4)));
+      meshes.push_back(covered_tetrahedron(random, random.between(0.05, 0.4)));
       const auto link =
           static_cast<std::size_t>(random.whole(1, static_cast<int>(robot.links().size()) - 1));
       obstacles.push_back(
@@ -250,7 +249,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
     bool before = false;
     for (int k = 0; k < 1500; ++k) {
       if (random.whole(0, 60) == 0) heading = random_configuration(random, robot, 1.0);
-      if (random.whole(0, 90) == 0) step = std::pow(10.0, random.uniform(-6.0, -1.3));
+      if (random.whole(0, 90) == 0) step = std::pow(10.0, random.between(-6.0, -1.3));
       if (random.whole(0, 150) == 0) at = near_home();
       if (random.whole(0, 20) != 0) {
         for (std::size_t v = 0; v < at.size(); ++v) at[v] += step * heading[v];
@@ -271,7 +270,7 @@ TEST(RobotMesh, AnswersAlongAPathAsWithoutMemory) {
 
 // A small body inside a large one touches none of its triangles.
 TEST(RobotMesh, WhatLiesInsideCollides) {
-  SceneRandom random(seeded(62));
+  Random random(seeded(62));
   RobotModel robot("base");
   robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
   const auto inner = covered_tetrahedron(random, 0.02);
@@ -289,7 +288,7 @@ TEST(RobotMesh, WhatLiesInsideCollides) {
 
 // So does a sphere inside a mesh, whichever of the two moves.
 TEST(RobotMesh, ASphereInsideCollides) {
-  SceneRandom random(seeded(64));
+  Random random(seeded(64));
   const auto outer = covered_tetrahedron(random, 2.0);
   const std::vector<double> path = {0.0, 0.5, 1.0};
   for (const bool mesh_moves : {true, false}) {

@@ -7,11 +7,12 @@
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +51,7 @@ std::shared_ptr<const SphereTree> tree_of(const std::vector<Sphere>& spheres) {
 
 class ProvedRobot : public testing::Test {
  protected:
-  void make(SceneRandom& random) {
+  void make(Random& random) {
     robot_ = random_box_robot(random, random.whole(2, 6), random.whole(0, 3) == 0,
                               random.whole(0, 3) == 0);
     pairs_ = std::make_shared<const LinkPairs>(
@@ -76,7 +77,7 @@ class ProvedRobot : public testing::Test {
     }
   }
 
-  void attach_tool(SceneRandom& random) {
+  void attach_tool(Random& random) {
     tool_pairs_ = nullptr;
     if (random.whole(0, 1) == 0) return;
     BoxRobot tool{robot_.model};
@@ -115,13 +116,13 @@ class ProvedRobot : public testing::Test {
   }
 
   // Within the limits, at places where boxes end, or beyond the limits.
-  Configuration random_in_ranges(SceneRandom& random) const {
+  Configuration random_in_ranges(Random& random) const {
     Configuration result;
     const double wider = random.whole(0, 4) == 0 ? 1.5 : 1.0;
     for (const int j : robot_.model.variable_joints()) {
       const Joint& joint = robot_.model.joints()[static_cast<std::size_t>(j)];
       const double part =
-          random.whole(0, 1) == 0 ? random.uniform(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
+          random.whole(0, 1) == 0 ? random.between(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
       double value = joint.lower + (joint.upper - joint.lower) * part;
       if (joint.type == JointType::kContinuous) value += 6.283185307179586 * random.whole(-2, 2);
       result.push_back(wider * value);
@@ -162,7 +163,7 @@ class ProvedRobot : public testing::Test {
 };
 
 TEST_F(ProvedRobot, ConfigurationsAreFreeByProofsOrSpheres) {
-  SceneRandom random(seeded(5101));
+  Random random(seeded(5101));
   int free = 0;
   int freed = 0;
   for (int n = 0; n < scaled(60, 10); ++n) {
@@ -193,7 +194,7 @@ TEST_F(ProvedRobot, ConfigurationsAreFreeByProofsOrSpheres) {
 }
 
 TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
-  SceneRandom random(seeded(5102));
+  Random random(seeded(5102));
   int free = 0;
   int freed = 0;
   int unknown = 0;
@@ -202,7 +203,7 @@ TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
     for (int i = 0; i < 20; ++i) {
       const Configuration from = random_in_ranges(random);
       Configuration to = random_in_ranges(random);
-      const double share = std::pow(10.0, random.uniform(-2.0, 0.0));
+      const double share = std::pow(10.0, random.between(-2.0, 0.0));
       for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + share * (to[k] - from[k]);
       const EdgeRequest request{.resolution = 1e-4, .first = random.whole(0, 1) == 0};
       for (std::size_t k = 0; k < checkers_.size(); ++k) {

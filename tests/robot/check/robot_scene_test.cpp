@@ -9,7 +9,8 @@
 #include "collide/point_cloud.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 

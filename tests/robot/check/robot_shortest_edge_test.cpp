@@ -5,10 +5,11 @@
 #include "base/error.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/edge_oracle.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -75,7 +76,7 @@ TEST(RobotShortestEdge, TheWayThatIsStatedIsProved) {
 
 // An arm of two continuous joints, the second of which a third one follows, and a prismatic one,
 // among small spheres.
-RobotChecker random_arm(SceneRandom& random) {
+RobotChecker random_arm(Random& random) {
   RobotModel robot("base");
   const Pose shoulder = Pose::from_translation({0.6, 0.0, 0.0});
   robot.add_link("upper", "base",
@@ -92,7 +93,7 @@ RobotChecker random_arm(SceneRandom& random) {
                   .axis = {1.0, 0.0, 0.5}});
   robot.add_link("slider", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .lower = -9.0, .upper = 9.0});
-  robot.mimic("wheel", "turn", static_cast<double>(random.whole(-3, 3)), random.uniform(-1.0, 1.0));
+  robot.mimic("wheel", "turn", static_cast<double>(random.whole(-3, 3)), random.between(-1.0, 1.0));
   for (const char* link : {"upper", "lower", "wheel"}) {
     robot.attach(link, one_sphere_tree({0.5, 0.0, 0.1}, 0.04));
   }
@@ -101,14 +102,14 @@ RobotChecker random_arm(SceneRandom& random) {
   for (int i = 0; i < 8; ++i) {
     scene.add("post" + std::to_string(i),
               one_sphere_tree(
-                  {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-1.0, 1.0)},
+                  {random.between(-1.5, 1.5), random.between(-1.5, 1.5), random.between(-1.0, 1.0)},
                   0.05));
   }
   return scene.snapshot();
 }
 
 TEST(RobotShortestEdge, WhatIsProvedFreeIsFree) {
-  SceneRandom random(seeded(91));
+  Random random(seeded(91));
   int free = 0;
   int hits = 0;
   int other_way = 0;
@@ -117,10 +118,10 @@ TEST(RobotShortestEdge, WhatIsProvedFreeIsFree) {
     RobotChecker::Scratch scratch(checker);
     for (int i = 0; i < 4; ++i) {
       const double size = i == 0 ? 90.0 : 4.0;
-      const Configuration from = {random.uniform(-size, size), random.uniform(-4.0, 4.0),
-                                  random.uniform(-0.5, 0.5)};
-      const Configuration to = {random.uniform(-size, size), random.uniform(-4.0, 4.0),
-                                random.uniform(-0.5, 0.5)};
+      const Configuration from = {random.between(-size, size), random.between(-4.0, 4.0),
+                                  random.between(-0.5, 0.5)};
+      const Configuration to = {random.between(-size, size), random.between(-4.0, 4.0),
+                                random.between(-0.5, 0.5)};
       Configuration end = to;
       for (std::size_t k = 0; k < 2; ++k) {
         end[k] = from[k] + std::remainder(to[k] - from[k], 2.0 * kPi);

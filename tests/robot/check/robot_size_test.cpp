@@ -5,8 +5,9 @@
 #include "base/error.h"
 #include "robot/check/robot_scene.h"
 #include "spheretree/build.h"
-#include "tests/collide/trees.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -77,7 +78,7 @@ TEST(RobotSize, TooManyJointsBetweenPairsAreRefused) {
 TEST(RobotSize, RegionsOfTooManySpheresAreRefused) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   RobotModel robot("base");
-  SceneRandom random(19);
+  Random random(19);
   robot.attach("base", std::make_shared<const SphereTree>(
                            build_tree(random_spheres(random, 300'000, 1.0, 0.1))));
   RobotScene scene(robot);

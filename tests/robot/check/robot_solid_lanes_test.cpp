@@ -6,11 +6,12 @@
 #include "collide/meshes/spheres_inside.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -50,15 +51,15 @@ TriangleMesh mesh_of_kind(int kind) {
 }
 
 // Of a random kind and size, the largest of which hold the whole robot.
-std::shared_ptr<const SolidMesh> random_solid(SceneRandom& random) {
+std::shared_ptr<const SolidMesh> random_solid(Random& random) {
   TriangleMesh mesh = mesh_of_kind(random.whole(0, kKinds - 1));
-  const double size = random.whole(0, 9) < 2 ? 20.0 : random.uniform(0.05, 2.0);
+  const double size = random.whole(0, 9) < 2 ? 20.0 : random.between(0.05, 2.0);
   for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= size;
-  mesh.vertex_error = random.whole(0, 1) == 0 ? 0.0 : random.uniform(0.0, 0.05);
+  mesh.vertex_error = random.whole(0, 1) == 0 ? 0.0 : random.between(0.0, 0.05);
   return std::make_shared<const SolidMesh>(mesh);
 }
 
-RandomScene scene_with_meshes(SceneRandom& random) {
+RandomScene scene_with_meshes(Random& random) {
   RandomScene result = random_scene(random);
   const int count = random.whole(1, 3);
   for (int i = 0; i < count; ++i) {
@@ -99,7 +100,7 @@ std::optional<std::array<std::vector<double>, 2>> at_contact(
 }
 
 TEST(RobotSolidLanes, VerdictsAreThoseOfTheCanonicalTests) {
-  SceneRandom random(seeded(921));
+  Random random(seeded(921));
   int close = 0;
   for (int n = 0; n < scaled(50, 8); ++n) {
     const auto [scene, oracle] = scene_with_meshes(random);
@@ -130,15 +131,15 @@ TEST(RobotSolidLanes, VerdictsAreThoseOfTheCanonicalTests) {
 }
 
 TEST(RobotSolidLanes, MotionsAreFreeWhereTheCanonicalTestsAre) {
-  SceneRandom random(seeded(922));
+  Random random(seeded(922));
   int free = 0;
   int hits = 0;
   for (int n = 0; n < scaled(20, 6); ++n) {
     const auto [scene, oracle] = scene_with_meshes(random);
-    const SceneRandom motions(random.bits());  // the same on every instruction set
+    const Random motions(random.bits());  // the same on every instruction set
     for (const InstructionSet set : instruction_sets()) {
       CheckerOfSet tested(scene, set);
-      SceneRandom motion = motions;
+      Random motion = motions;
       for (int i = 0; i < 4; ++i) {
         const std::vector<double> from = random_configuration(motion, oracle.robot, 3.0);
         const std::vector<double> to =
@@ -217,7 +218,7 @@ TEST(RobotSolidGrowth, TouchesWithinTheGrowth) {
 
 // Points that the canonical test finds in the solid, as near to it as it goes, are in the cover.
 TEST(SolidSpheres, HoldWhatTheCanonicalTestFindsInside) {
-  SceneRandom random(seeded(923));
+  Random random(seeded(923));
   int inside = 0;
   for (int n = 0; n < 2 * kKinds; ++n) {
     TriangleMesh mesh = mesh_of_kind(n % kKinds);

@@ -3,11 +3,12 @@
 
 #include "base/error.h"
 #include "robot/model/shared_work.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -37,19 +38,19 @@ std::vector<RobotChecker::Scratch> scratches(const ObstacleChecker& checker, std
 }
 
 // In small steps, with a jump now and then.
-std::vector<double> random_path(SceneRandom& random, const RobotModel& robot, std::size_t count) {
+std::vector<double> random_path(Random& random, const RobotModel& robot, std::size_t count) {
   std::vector<double> path;
   std::vector<double> at = random_configuration(random, robot, 3.2);
   for (std::size_t i = 0; i < count; ++i) {
     if (random.whole(0, 99) == 0) at = random_configuration(random, robot, 3.2);
-    for (double& position : at) position += random.uniform(-0.01, 0.01);
+    for (double& position : at) position += random.between(-0.01, 0.01);
     path.insert(path.end(), at.begin(), at.end());
   }
   return path;
 }
 
 TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
-  SceneRandom random(seeded(71));
+  Random random(seeded(71));
   std::size_t hits = 0;
   std::size_t free = 0;
   for (int i = 0; i < scaled(40, 6); ++i) {

@@ -2,9 +2,9 @@
 #include "tests/robot/check/scene_oracle.h"
 
 #include "robot/model/kinematics.h"
-#include "tests/collide/exact_pose.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
+#include "tests/support/exact/poses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,13 +91,13 @@ std::optional<long double> OracleScene::gap(std::span<const double> configuratio
 namespace {
 
 // What a scene is told of two bodies, and so the oracle; nothing if they may touch.
-std::optional<OraclePair> random_pair(SceneRandom& random, RobotScene& scene,
-                                      const OracleScene& oracle, std::size_t k, std::size_t i) {
+std::optional<OraclePair> random_pair(Random& random, RobotScene& scene, const OracleScene& oracle,
+                                      std::size_t k, std::size_t i) {
   const OracleBody& first = oracle.bodies[k];
   const OracleBody& second = oracle.bodies[i];
   OraclePair pair{k, i, 0.0L, {}};
   if (random.whole(0, 7) == 0) {
-    pair.padding = random.uniform(0.0, 0.03);
+    pair.padding = random.between(0.0, 0.03);
     const bool swapped = second.link >= 0 && random.whole(0, 1) == 0;
     scene.set_padding(swapped ? second.name : first.name, swapped ? first.name : second.name,
                       static_cast<double>(pair.padding));
@@ -124,7 +124,7 @@ std::optional<OraclePair> random_pair(SceneRandom& random, RobotScene& scene,
 
 }  // namespace
 
-RandomScene random_scene(SceneRandom& random) {
+RandomScene random_scene(Random& random) {
   const RobotModel robot = random_robot_with_trees(random, 0.4);
   const Pose world_from_root = random.whole(0, 1) == 0 ? Pose() : random.pose(3.0);
   RandomScene result{RobotScene(robot, world_from_root), {robot, world_from_root, {}, {}}};
@@ -158,7 +158,7 @@ RandomScene random_scene(SceneRandom& random) {
   }
   for (std::size_t i = 0; i < bodies; ++i) {
     if (random.whole(0, 3) > 0) continue;
-    oracle.bodies[i].padding = random.uniform(0.0, 0.03);
+    oracle.bodies[i].padding = random.between(0.0, 0.03);
     scene.set_padding(oracle.bodies[i].name, static_cast<double>(oracle.bodies[i].padding));
   }
   for (std::size_t i = 0; i < oracle.bodies.size(); ++i) {

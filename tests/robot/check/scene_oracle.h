@@ -5,7 +5,7 @@
 // in extended precision, under the poses of forward_kinematics(). Shares no code with the checker.
 
 #include "robot/check/robot_scene.h"
-#include "tests/collide/scene_random.h"
+#include "tests/support/random.h"
 
 #include <optional>
 #include <span>
@@ -51,6 +51,6 @@ struct RandomScene {
   RobotScene scene;
   OracleScene oracle;
 };
-RandomScene random_scene(SceneRandom& random);
+RandomScene random_scene(Random& random);
 
 }  // namespace spherule::test

@@ -22,7 +22,7 @@ bool has(const std::vector<Vector3i>& cells, const Vector3i& cell) {
   return std::find(cells.begin(), cells.end(), cell) != cells.end();
 }
 
-std::vector<Vector3i> random_row(SceneRandom& random, int count) {
+std::vector<Vector3i> random_row(Random& random, int count) {
   std::vector<Vector3i> cells = {Vector3i::Zero()};
   Vector3i step = Vector3i::UnitX();
   while (static_cast<int>(cells.size()) < count) {
@@ -50,7 +50,7 @@ fcl::Transform3d transform_of(const Pose& pose) {
 
 }  // namespace
 
-VoxelSolid::VoxelSolid(SceneRandom& random, int cells, double cell_size) : half_(0.5 * cell_size) {
+VoxelSolid::VoxelSolid(Random& random, int cells, double cell_size) : half_(0.5 * cell_size) {
   const std::vector<Vector3i> row = random_row(random, cells);
   std::vector<Sphere> spheres;
   for (const Vector3i& cell : row) {

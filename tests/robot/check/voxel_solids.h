@@ -6,7 +6,7 @@
 
 #include "collide/meshes/mesh_contact.h"
 #include "geometry/pose.h"
-#include "tests/collide/scene_random.h"
+#include "tests/support/random.h"
 
 #include <Eigen/Core>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -20,7 +20,7 @@ namespace spherule::test {
 // Cells that share faces in a bent row, which may close.
 class VoxelSolid {
  public:
-  VoxelSolid(SceneRandom& random, int cells, double cell_size);
+  VoxelSolid(Random& random, int cells, double cell_size);
 
   const TriangleMesh& mesh() const { return mesh_; }
   // Covered by one sphere for each cell, which protrudes from its faces by 0.37 cell sizes.

@@ -207,7 +207,7 @@ void count_posture(const BoxRobot& robot, const AllowedCollisions& allowed, cons
 }
 
 TEST(FalseAlarmsOfBoxes, CountsAreThoseOfBruteForce) {
-  SceneRandom random(7);
+  Random random(7);
   std::size_t refused = 0;
   std::size_t spared = 0;
   std::size_t shared = 0;
@@ -225,7 +225,7 @@ TEST(FalseAlarmsOfBoxes, CountsAreThoseOfBruteForce) {
         const Joint& joint = robot.model.joints()[static_cast<std::size_t>(j)];
         // Beyond the limits, too.
         const double beyond = k % 3 == 0 ? 0.5 : 0.0;
-        postures.push_back(random.uniform(joint.lower - beyond, joint.upper + beyond));
+        postures.push_back(random.between(joint.lower - beyond, joint.upper + beyond));
       }
     }
     const auto with = static_cast<PairProofs>(n % 3);

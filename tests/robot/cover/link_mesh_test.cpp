@@ -4,9 +4,9 @@
 #include "base/error.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"
-#include "tests/mesh/mesh_files.h"
 #include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/files/trajectory_file.h"
-#include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
@@ -64,15 +64,15 @@ TEST(OutsideLimits, AreCountedAndTheFirstIsNamed) {
 
 TEST(DegreesGuess, TellsDegreesFromRadians) {
   const RobotModel robot = robot_of_all_kinds();
-  SceneRandom random(72);
+  Random random(72);
   int told = 0;
   const int cases = effort(500, 100);
   for (int i = 0; i < cases; ++i) {
     // Large motions of all joints, in radians and in degrees.
     std::vector<std::vector<double>> radians, degrees;
     for (int k = 0; k < 20; ++k) {
-      const std::vector<double> at = {random.uniform(-2.0, 2.5), random.uniform(-1.0, 1.0),
-                                      random.uniform(-kPi, kPi)};
+      const std::vector<double> at = {random.between(-2.0, 2.5), random.between(-1.0, 1.0),
+                                      random.between(-kPi, kPi)};
       radians.push_back(at);
       degrees.push_back({at[0] / kDegree, at[1], at[2] / kDegree});
     }

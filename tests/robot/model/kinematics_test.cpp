@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "robot/check/robot_collision.h"
 #include "spheretree/build.h"
-#include "tests/collide/exact_scene.h"
 #include "tests/robot/robots.h"
+#include "tests/support/exact/spheres.h"
 
 #include <gtest/gtest.h>
 #include <kdl/jntarray.hpp>
@@ -54,7 +54,7 @@ KDL::Tree kdl_tree(const RobotModel& robot) {
 }
 
 void compare_with_kdl(bool branching) {
-  SceneRandom random(1);
+  Random random(1);
   for (int i = 0; i < 100; ++i) {
     const RobotModel robot = random_robot(random, random.whole(1, 12), branching);
     if (robot.variable_count() == 0) continue;  // KDL requires a position even then
@@ -170,7 +170,7 @@ double error_of(const Pose& computed, const ExactPose& pose, const Eigen::Vector
 }
 
 TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
-  SceneRandom random(2);
+  Random random(2);
   double worst = 0.0;
   for (int i = 0; i < 90; ++i) {
     RobotModel robot = random_robot(random, random.whole(1, 10), i % 2 == 0);
@@ -195,7 +195,7 @@ TEST(Kinematics, ErrorBoundCoversTheErrorAndIsNotIdle) {
 
 // A large offset that nearly cancels: the position's rounding is the whole error.
 TEST(Kinematics, ErrorBoundCoversMimicsThatCancel) {
-  SceneRandom random(6);
+  Random random(6);
   double worst = 0.0;
   for (int i = 0; i < 200; ++i) {
     RobotModel robot;
@@ -206,9 +206,9 @@ TEST(Kinematics, ErrorBoundCoversMimicsThatCancel) {
                     .lower = -1.0,
                     .upper = 1.0});
     const double plain = kinematics_error_bound(robot, 2.0);
-    const double multiplier = random.uniform(1e5, 1e6);
-    const double variable = random.uniform(90.0, 99.0);
-    robot.mimic("b", "a", multiplier, random.uniform(-90.0, 90.0) - multiplier * variable);
+    const double multiplier = random.between(1e5, 1e6);
+    const double variable = random.between(90.0, 99.0);
+    robot.mimic("b", "a", multiplier, random.between(-90.0, 90.0) - multiplier * variable);
     const std::vector<double> configuration = {variable};
     const double error = error_of(poses_of(robot, configuration)[2],
                                   exact_poses_of(robot, configuration, Pose())[2], {2.0, 0, 0});
@@ -219,7 +219,7 @@ TEST(Kinematics, ErrorBoundCoversMimicsThatCancel) {
 }
 
 TEST(Kinematics, PutsTheRootWhereItIsTold) {
-  SceneRandom random(3);
+  Random random(3);
   const RobotModel robot = random_robot(random, 3, false);
   const Pose root = random.pose(1.0);
   const Pose first = poses_of(robot, random_configuration(random, robot, 1.0), root)[0];
@@ -228,7 +228,7 @@ TEST(Kinematics, PutsTheRootWhereItIsTold) {
 }
 
 TEST(Kinematics, RefusesABadConfiguration) {
-  SceneRandom random(4);
+  Random random(4);
   RobotModel robot;
   robot.add_link("arm", "base_link", {.name = "hinge", .type = JointType::kRevolute});
   std::vector<Pose> poses;
@@ -244,7 +244,7 @@ TEST(Kinematics, RefusesABadConfiguration) {
 }
 
 TEST(RobotCollides, IsTheCollisionOfAnyTreeOnAnyLink) {
-  SceneRandom random(5);
+  Random random(5);
   int hits = 0;
   for (int i = 0; i < 60; ++i) {
     RobotModel robot = random_robot(random, 5, true);

@@ -37,7 +37,7 @@ LinkRelations::Relation relation(const RobotModel& robot, int first, int second,
 }
 
 TEST(LinkRelations, AreThoseOfTheJointsBetween) {
-  SceneRandom random(401);
+  Random random(401);
   std::vector<int> counts(3);
   int apart = 0;
   for (int n = 0; n < 100; ++n) {

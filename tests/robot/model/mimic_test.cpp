@@ -5,12 +5,12 @@
 #include "base/error.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/collide/counting_new.h"
-#include "tests/collide/tetrahedra.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
+#include "tests/support/counting_new.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ TEST(Mimic, RefusesWhatIsNoMimic) {
   EXPECT_EQ(large.joints()[0].multiplier, 1e200);
 }
 
-RobotModel random_follower(SceneRandom& random, double size) {
+RobotModel random_follower(Random& random, double size) {
   RobotModel robot = random_robot_with_trees(random, size);
   add_random_mimics(random, robot, 3.0);
   return robot;
@@ -113,21 +113,21 @@ TEST(Mimic, ChainsMayBeLong) {
 }
 
 TEST(Mimic, ObstacleCheckerAnswersAsThePairsDo) {
-  SceneRandom random(81);
+  Random random(81);
   int hits = 0;
   int all = 0;
   for (int i = 0; i < effort(150, 15); ++i) {
     const RobotModel robot = random_follower(random, 0.3);
     const std::vector<PlacedTree> obstacles = random_obstacles(random);
     ObstacleOptions options{.world_from_root = i % 2 == 0 ? Pose() : random_root(random, 3.0)};
-    const double clearance = random.uniform(0.0, 0.2);
+    const double clearance = random.between(0.0, 0.2);
     for (const InstructionSet set : instruction_sets()) {
       options.instructions = set;
       const ObstacleChecker checker(robot, obstacles, options);
       RobotChecker::Scratch scratch(checker);
       std::vector<double> configurations;
       std::vector<std::uint8_t> expected;
-      SceneRandom steps(static_cast<std::uint64_t>(i));  // the same on every set
+      Random steps(static_cast<std::uint64_t>(i));  // the same on every set
       std::vector<double> q = random_configuration(steps, robot, 3.0);
       for (int k = 0; k < 50; ++k) {
         // Along a path, then jumping, and some beyond the range of the fast check.
@@ -153,7 +153,7 @@ TEST(Mimic, ObstacleCheckerAnswersAsThePairsDo) {
 }
 
 TEST(Mimic, ConfigurationsAreSharedAmongThreads) {
-  SceneRandom random(82);
+  Random random(82);
   const RobotModel robot = random_follower(random, 0.3);
   const std::vector<PlacedTree> obstacles = random_obstacles(random);
   const ObstacleChecker checker(robot, obstacles);
@@ -173,7 +173,7 @@ TEST(Mimic, ConfigurationsAreSharedAmongThreads) {
 }
 
 TEST(Mimic, MeshesAmongSpheresAreJudgedAsThePairsAre) {
-  SceneRandom random(83);
+  Random random(83);
   const auto mesh =
       covered_surface({{{0, 0, 0}, {0.6, 0, 0}, {0, 0.6, 0}, {0, 0, 0.6}}, {{0, 1, 2}, {0, 2, 3}}});
   int hits = 0;
@@ -214,7 +214,7 @@ std::vector<double> between(const std::vector<double>& from, const std::vector<d
 }
 
 TEST(Mimic, EdgesThatAreProvedFreeAreFree) {
-  SceneRandom random(84);
+  Random random(84);
   int free = 0;
   int hits = 0;
   int unknown = 0;
@@ -222,7 +222,7 @@ TEST(Mimic, EdgesThatAreProvedFreeAreFree) {
     const RobotModel robot = random_follower(random, 0.2);
     const ObstacleChecker checker(robot, random_obstacles(random));
     RobotChecker::Scratch scratch(checker);
-    const double size = std::pow(10.0, random.uniform(-3.0, 1.0));
+    const double size = std::pow(10.0, random.between(-3.0, 1.0));
     const std::vector<double> from = random_configuration(random, robot, 3.0);
     std::vector<double> to = random_configuration(random, robot, size);
     for (std::size_t k = 0; k < to.size(); ++k) to[k] += from[k];
@@ -250,13 +250,13 @@ TEST(Mimic, EdgesThatAreProvedFreeAreFree) {
 // A base that carries a handle without spheres, and an arm of ten metres that turns with it at
 // multiplier * handle + offset: a small obstacle stands where the arm gets on the way.
 TEST(Mimic, FastFollowersDoNotPassThrough) {
-  SceneRandom random(85);
+  Random random(85);
   for (int i = 0; i < effort(300, 30); ++i) {
-    const double angle = random.uniform(-3.0, 3.0);
+    const double angle = random.between(-3.0, 3.0);
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), 0.0);
     // From nearly standing to many turns while the handle moves a little, with offsets that cancel.
-    const double multiplier = std::pow(10.0, random.uniform(-1.0, 4.0));
-    const double handle = random.uniform(-90.0, 90.0);
+    const double multiplier = std::pow(10.0, random.between(-1.0, 4.0));
+    const double handle = random.between(-90.0, 90.0);
     const double offset = angle - multiplier * handle;
     RobotModel robot("base");
     robot.add_link("arm", "base", {.name = "arm", .type = JointType::kContinuous});
@@ -264,12 +264,12 @@ TEST(Mimic, FastFollowersDoNotPassThrough) {
                    {.name = "handle", .type = JointType::kPrismatic, .lower = -99, .upper = 99});
     robot.attach("arm", one_sphere_tree({10, 0, 0}, 1e-3));
     robot.mimic("arm", "handle", multiplier, offset);
-    const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
+    const double size = std::pow(10.0, random.between(-6.0, -2.0));
     const ObstacleChecker checker(robot, {{one_sphere_tree(center, size), Pose()}});
     RobotChecker::Scratch scratch(checker);
     const double reach = std::min(5.0, 30.0 / multiplier);
-    const double before = random.uniform(0.01, 1.0) * reach;
-    const double after = random.uniform(0.01, 1.0) * reach;
+    const double before = random.between(0.01, 1.0) * reach;
+    const double after = random.between(0.01, 1.0) * reach;
     const std::vector<double> from = {handle - before};
     const std::vector<double> to = {handle + after};
     const EdgeResult result = checker.check_edge(from, to, scratch, {.first = true});
@@ -287,11 +287,11 @@ TEST(Mimic, FastFollowersDoNotPassThrough) {
 // In the middle of the motion the arm touches by so little that single precision is uncertain: for
 // the configuration there, of which the arm's position comes first among the positions.
 TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
-  SceneRandom random(88);
+  Random random(88);
   for (int i = 0; i < effort(100, 20); ++i) {
-    const double handle = random.uniform(-3.0, 3.0);
-    const double multiplier = random.uniform(1.0, 3.0);
-    const double angle = random.uniform(-3.0, 3.0);
+    const double handle = random.between(-3.0, 3.0);
+    const double multiplier = random.between(1.0, 3.0);
+    const double angle = random.between(-3.0, 3.0);
     RobotModel robot("base");
     robot.add_link("arm", "base", {.name = "arm", .type = JointType::kContinuous});
     robot.add_link("handle", "base", {.name = "handle", .type = JointType::kPrismatic});
@@ -300,7 +300,7 @@ TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
     const Eigen::Vector3d center(10.0 * std::cos(angle), 10.0 * std::sin(angle), 3e-3 - 1e-9);
     const ObstacleChecker checker(robot, {{one_sphere_tree(center, 2e-3), Pose()}});
     RobotChecker::Scratch scratch(checker);
-    const double before = random.uniform(0.01, 0.5);
+    const double before = random.between(0.01, 0.5);
     const EdgeResult result =
         checker.check_edge(std::vector<double>{handle - before},
                            std::vector<double>{handle + before}, scratch, {.resolution = 1e-2});
@@ -312,20 +312,20 @@ TEST(Mimic, DoubtsOnEdgesAreSettledWhereTheyAre) {
 // A sphere that two followers move along a line, with multipliers and offsets so large that the
 // computed positions are up to a millimetre beside it, where obstacles stand.
 TEST(Mimic, RoundingDoesNotHideContactsOnEdges) {
-  SceneRandom random(87);
+  Random random(87);
   int free = 0;
   int beside = 0;
   for (int i = 0; i < effort(200, 20); ++i) {
-    const double gap = random.uniform(0.0, i % 2 == 0 ? 3e-3 : 0.2);
+    const double gap = random.between(0.0, i % 2 == 0 ? 3e-3 : 0.2);
     RobotModel robot("base");
     robot.add_link("handle", "base", {.name = "handle", .type = JointType::kPrismatic});
     robot.add_link("x", "base",
                    {.name = "x", .type = JointType::kPrismatic, .axis = {1.0, 0.0, 0.0}});
     robot.add_link("y", "x", {.name = "y", .type = JointType::kPrismatic, .axis = {0.0, 1.0, 0.0}});
     robot.attach("y", one_sphere_tree({0, 0, 0}, 0.01));
-    const double handle = random.uniform(9.0, 15.0);
-    const double to_x = random.uniform(0.5e12, 1e12);
-    const double to_y = random.uniform(-1e12, 1e12);
+    const double handle = random.between(9.0, 15.0);
+    const double to_x = random.between(0.5e12, 1e12);
+    const double to_y = random.between(-1e12, 1e12);
     robot.mimic("x", "handle", to_x, -to_x * handle);
     robot.mimic("y", "handle", to_y, -to_y * handle);
     const Eigen::Vector3d beside_line = Eigen::Vector3d(-to_y, to_x, 0.0).normalized();
@@ -367,7 +367,7 @@ TEST(Mimic, PositionsBeyondTheRangeAreRefusedOnEdges) {
 }
 
 TEST(Mimic, AQueryTakesNoMemory) {
-  SceneRandom random(86);
+  Random random(86);
   RobotModel robot = chain();
   robot.mimic("a", "c", 0.5, 0.25);
   robot.mimic("d", "b", -2.0);

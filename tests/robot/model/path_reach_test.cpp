@@ -27,8 +27,8 @@ struct Body {
   Eigen::Vector3d point;  // in the sphere
 };
 
-Body random_body(SceneRandom& random, const RobotModel& robot) {
-  const Sphere sphere{random.point(1.0), random.uniform(0.0, 0.3)};
+Body random_body(Random& random, const RobotModel& robot) {
+  const Sphere sphere{random.point(1.0), random.between(0.0, 0.3)};
   return {random.whole(0, static_cast<int>(robot.links().size()) - 1), sphere,
           sphere.center + sphere.radius * random.point(1.0).normalized()};
 }
@@ -43,7 +43,7 @@ std::vector<Pose> poses_at_zero(const RobotModel& robot) {
 // Each distance bounds every other one, by its own value and slope; the test counts how often a
 // bound was nearly reached.
 TEST(PathReach, BoundsHowDistancesChange) {
-  SceneRandom random(321);
+  Random random(321);
   int near_speed = 0;
   int near_bend = 0;
   for (int n = 0; n < effort(3000, 300); ++n) {
@@ -80,13 +80,13 @@ TEST(PathReach, BoundsHowDistancesChange) {
           .norm();
     };
     for (int i = 0; i < 5; ++i) {
-      const double middle = random.uniform(0.001, 0.999);
+      const double middle = random.between(0.001, 0.999);
       const double step = 1e-5;
       const double there = distance(middle);
       if (there < 0.01) continue;
       const double slope = (distance(middle + step) - distance(middle - step)) / (2.0 * step);
       for (int k = 0; k < 5; ++k) {
-        const double h = (k == 0 ? 0.01 : 1.0) * random.uniform(-middle, 1.0 - middle);
+        const double h = (k == 0 ? 0.01 : 1.0) * random.between(-middle, 1.0 - middle);
         const double lost = there - distance(middle + h);
         const double rounding = 1e-6 * std::abs(h) * (1.0 + bounds.bend) + 1e-12;
         ASSERT_LE(lost, bounds.speed * std::abs(h) + rounding) << n;

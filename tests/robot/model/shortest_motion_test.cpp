@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "robot/model/link_paths.h"
-#include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -33,13 +33,13 @@ double error_of(double angle, double to) {
 }
 
 TEST(NearestTurn, IsTheSamePostureAtMostHalfATurnAway) {
-  SceneRandom random(71);
+  Random random(71);
   double worst = 0.0;
   int turned = 0;
   for (int i = 0; i < effort(200000, 20000); ++i) {
-    const double size = std::pow(10.0, random.uniform(-1.0, 2.0));
-    const double from = random.uniform(-size, size);
-    const double to = random.uniform(-size, size);
+    const double size = std::pow(10.0, random.between(-1.0, 2.0));
+    const double from = random.between(-size, size);
+    const double to = random.between(-size, size);
     const double angle = nearest_turn(from, to);
     worst = std::max(worst, error_of(angle, to));
     ASSERT_LE(std::abs(angle - from), std::numbers::pi + kTurnError);

@@ -5,10 +5,11 @@
 #include "collide/collide.h"
 #include "robot/check/robot_collision.h"
 #include "robot/model/kinematics.h"
-#include "tests/collide/trees.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -92,7 +93,7 @@ TEST(AllowedCollisions, GivenByName) {
 
 // Bits beyond the first word, and no pair is another's.
 TEST(AllowedCollisions, BitsEqualNames) {
-  SceneRandom random(61);
+  Random random(61);
   RobotModel robot("link_0");
   for (int i = 1; i < 40; ++i) {
     robot.add_link("link_" + std::to_string(i), "link_" + std::to_string(random.whole(0, i - 1)),

@@ -4,8 +4,8 @@
 #include "robot/pairs/free_boxes.h"
 
 #include "robot/check/plan_source.h"
-#include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using Configuration = std::vector<double>;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // Often one half alone is halved on: boxes get as thin as rounding.
-void add_nodes(SceneRandom& random, int variables, int depth, std::string& nodes) {
+void add_nodes(Random& random, int variables, int depth, std::string& nodes) {
   if (depth == 0 || random.whole(0, 9) == 0) {
     nodes += static_cast<char>(random.whole(0, 2) == 0 ? FreeBoxes::kNotProved : FreeBoxes::kFree);
     return;
@@ -45,13 +45,13 @@ struct Case {
   std::vector<std::vector<double>> planes;  // of each variable: where boxes end
 };
 
-Case random_case(SceneRandom& random, int most_variables) {
+Case random_case(Random& random, int most_variables) {
   std::vector<FreeBoxes::Variable> variables;
   const int count = random.whole(1, most_variables);
   for (int i = 0; i < count; ++i) {
     FreeBoxes::Variable variable{.index = i, .wraps = random.whole(0, 3) == 0};
-    variable.lower = variable.wraps ? -std::numbers::pi : random.uniform(-3.0, 1.0);
-    variable.upper = variable.wraps ? std::numbers::pi : variable.lower + random.uniform(0.01, 3.0);
+    variable.lower = variable.wraps ? -std::numbers::pi : random.between(-3.0, 1.0);
+    variable.upper = variable.wraps ? std::numbers::pi : variable.lower + random.between(0.01, 3.0);
     variables.push_back(variable);
   }
   std::string nodes;
@@ -94,14 +94,14 @@ double distance_to_free(const Case& tested, const Configuration& q) {
 }
 
 // In each variable near a plane, by some tolerances or less, or anywhere.
-Configuration random_configuration(SceneRandom& random, const Case& tested) {
+Configuration random_configuration(Random& random, const Case& tested) {
   Configuration q;
   for (std::size_t i = 0; i < tested.planes.size(); ++i) {
     const auto& planes = tested.planes[i];
     const FreeBoxes::Variable& variable = tested.boxes.variables()[i];
     const double step = FreeBoxes::kTolerance * 0.25 * random.whole(-6, 6);
     double value = random.whole(0, 2) == 0
-                       ? random.uniform(variable.lower - 0.1, variable.upper + 0.1)
+                       ? random.between(variable.lower - 0.1, variable.upper + 0.1)
                        : planes[static_cast<std::size_t>(
                              random.whole(0, static_cast<int>(planes.size()) - 1))] +
                              step;
@@ -115,7 +115,7 @@ Configuration random_configuration(SceneRandom& random, const Case& tested) {
 constexpr double kRounding = 1e-14;
 
 TEST(FreeBoxesQueries, ConfigurationsAreFreeWithinTheToleranceOfFreeLeaves) {
-  SceneRandom random(811);
+  Random random(811);
   int free = 0;
   int near = 0;
   for (int n = 0; n < effort(600, 100); ++n) {
@@ -134,7 +134,7 @@ TEST(FreeBoxesQueries, ConfigurationsAreFreeWithinTheToleranceOfFreeLeaves) {
 }
 
 TEST(FreeBoxesQueries, PointsOfFreeEdgesAreFree) {
-  SceneRandom random(812);
+  Random random(812);
   int free = 0;
   for (int n = 0; n < effort(600, 100); ++n) {
     const Case tested = random_case(random, 3);
@@ -142,7 +142,7 @@ TEST(FreeBoxesQueries, PointsOfFreeEdgesAreFree) {
       const Configuration from = random_configuration(random, tested);
       Configuration to = from;
       for (double& value : to) {
-        if (random.whole(0, 3) > 0) value += random.uniform(-0.5, 0.5);
+        if (random.whole(0, 3) > 0) value += random.between(-0.5, 0.5);
       }
       if (random.whole(0, 1) == 0) to = random_configuration(random, tested);
       if (!tested.boxes.contains_edge(from, to)) continue;
@@ -161,7 +161,7 @@ TEST(FreeBoxesQueries, PointsOfFreeEdgesAreFree) {
 // A cell that is free holds no configuration further than the tolerance from a free leaf, however
 // thin the leaves between are.
 TEST(FreeBoxesQueries, FreeCellsHoldFreeConfigurations) {
-  SceneRandom random(813);
+  Random random(813);
   int free = 0;
   int cells_of = 0;
   const std::vector<int> positions{0, 1};

@@ -3,8 +3,8 @@
 // of the corners exactly if no direction has a point that is further than that before all corners.
 
 #include "robot/pairs/link_pieces.h"
-#include "tests/collide/scene_random.h"
 #include "tests/support/effort.h"
+#include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
@@ -28,10 +28,10 @@ long double most_along(const std::vector<Vector3d>& points, const Vector3d& dire
   return most / n.norm();
 }
 
-Vector3d direction(SceneRandom& random) {
+Vector3d direction(Random& random) {
   Vector3d result;
   do {
-    result = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    result = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
   } while (result.norm() < 0.1);
   return result.normalized();
 }
@@ -43,15 +43,15 @@ std::vector<Vector3d> points_of(int count, const std::function<Vector3d()>& poin
 }
 
 TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
-  SceneRandom random(83);
+  Random random(83);
   const auto sphere = [&] { return direction(random); };
-  const auto inside = [&] { return Vector3d(random.uniform(0, 1) * direction(random)); };
+  const auto inside = [&] { return Vector3d(random.between(0, 1) * direction(random)); };
   const auto rod = [&] {
-    const double angle = random.uniform(0.0, 6.3);
+    const double angle = random.between(0.0, 6.3);
     return Vector3d(0.05 * std::cos(angle), 0.05 * std::sin(angle), random.whole(0, 40) / 20.0);
   };
-  const auto plate = [&] { return Vector3d(random.uniform(0, 1), random.uniform(0, 1), 0.25); };
-  const auto line = [&] { return Vector3d(random.uniform(0, 1), 0.5, 0.25); };
+  const auto plate = [&] { return Vector3d(random.between(0, 1), random.between(0, 1), 0.25); };
+  const auto line = [&] { return Vector3d(random.between(0, 1), 0.5, 0.25); };
   const auto far = [&] { return Vector3d(direction(random) + Vector3d(1e6, -2e6, 3e6)); };
   const std::vector<std::function<Vector3d()>> families{sphere, inside, rod, plate, line, far};
   for (const auto& family : families) {
@@ -75,14 +75,14 @@ TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
 }
 
 TEST(HullCorners, AreFew) {
-  SceneRandom random(84);
+  Random random(84);
   const std::vector<Vector3d> sphere = points_of(5000, [&] { return direction(random); });
   EXPECT_LT(hull_corners(sphere, 0.01).corners.size(), 700U);
   EXPECT_LT(hull_corners(sphere, 0.1).corners.size(), 100U);
 }
 
 TEST(HullCorners, OfFewPointsAreAll) {
-  SceneRandom random(85);
+  Random random(85);
   const std::vector<Vector3d> points = points_of(50, [&] { return direction(random); });
   const HullCorners found = hull_corners(points, 0.5);
   EXPECT_EQ(found.corners, points);

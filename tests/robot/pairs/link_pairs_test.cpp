@@ -37,12 +37,12 @@ AlignedBox3d box(const Vector3d& low, const Vector3d& high) {
 }
 
 // Half of them at places where boxes end: the limits and halves, quarters, ... between them.
-Configuration random_in_ranges(SceneRandom& random, const RobotModel& robot) {
+Configuration random_in_ranges(Random& random, const RobotModel& robot) {
   Configuration result;
   for (const int j : robot.variable_joints()) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
     const double part =
-        random.whole(0, 1) == 0 ? random.uniform(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
+        random.whole(0, 1) == 0 ? random.between(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
     double value = joint.lower + (joint.upper - joint.lower) * part;
     if (joint.type == JointType::kContinuous) value += kTurn * random.whole(-2, 2);
     result.push_back(value);
@@ -63,11 +63,11 @@ class LinkPairsOfBoxes : public testing::Test {
     }
   }
 
-  void check_edge(SceneRandom& random, const BoxRobot& robot, const LinkPairs& pairs) {
+  void check_edge(Random& random, const BoxRobot& robot, const LinkPairs& pairs) {
     const Configuration from = random_in_ranges(random, robot.model);
     Configuration to = from;
     const double size = random.whole(0, 1) == 0 ? 0.2 : 2.0;
-    for (double& value : to) value += random.uniform(-size, size);
+    for (double& value : to) value += random.between(-size, size);
     for (const LinkPair& pair : pairs.pairs()) {
       if (!pairs.is_edge_free(pair.first, pair.second, from, to)) continue;
       ++edges_;
@@ -89,7 +89,7 @@ class LinkPairsOfBoxes : public testing::Test {
 };
 
 TEST_F(LinkPairsOfBoxes, NoneTouchesWhereItIsProvedFree) {
-  SceneRandom random(41);
+  Random random(41);
   std::array<int, 3> verdicts{};
   for (int n = 0; n < effort(60, 6); ++n) {
     const BoxRobot robot = random_box_robot(random, random.whole(1, 5), n % 2 == 0, n % 3 == 0);
@@ -318,11 +318,11 @@ TEST(LinkPairs, PointsOfFreeEdgesAreFreeUpToTheRim) {
   const FreeBoxes boxes(
       {{.index = 0, .lower = -1.0, .upper = 0.9}, {.index = 1, .lower = -100.0, .upper = 100.0}},
       std::string(1, '\1'));
-  SceneRandom random(511);
+  Random random(511);
   int free = 0;
   for (int i = 0; i < 2000; ++i) {
     const auto end = [&] {
-      const double beyond = random.uniform(-1.0, 1.0) * FreeBoxes::kTolerance;
+      const double beyond = random.between(-1.0, 1.0) * FreeBoxes::kTolerance;
       return Configuration{(random.whole(0, 1) == 0 ? -1.0 : 0.9) + beyond,
                            random.whole(0, 1) == 0 ? -100.0 : 100.0};
     };
@@ -359,7 +359,7 @@ TEST(LinkPairs, SpheresCountAsSolid) {
 }
 
 TEST(LinkPairs, ThreadsChangeNothing) {
-  SceneRandom random(5);
+  Random random(5);
   const BoxRobot robot = random_box_robot(random, 5, true, true);
   double last = 0.0;
   const LinkPairs one = prove_link_pairs(robot.model, robot.bodies,

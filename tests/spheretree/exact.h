@@ -1,5 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#pragma once
-
-// The old name of this header.
-#include "tests/support/exact/spheres.h"
