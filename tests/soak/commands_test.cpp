@@ -307,7 +307,7 @@ class Killer {
 
   // At any moment of a run.
   void at_any_time(pid_t process) const {
-    std::this_thread::sleep_for(random_.uniform(0.0, 1.05) * whole_run_);
+    std::this_thread::sleep_for(random_.between(0.0, 1.05) * whole_run_);
     kill(process, SIGKILL);
   }
 

@@ -43,7 +43,7 @@ QueriedConfigurations make_configurations(TreeScene& scene, SoakRandom& random) 
   for (std::size_t i = 0; i < kTreeConfigurations; ++i) {
     std::vector<double> next = is_path ? last : scene.anywhere(random);
     if (is_path) {
-      for (double& position : next) position += random.uniform(-0.01, 0.01);
+      for (double& position : next) position += random.between(-0.01, 0.01);
     }
     last = next;
     const bool is_near = random.chance(kNear) && scene.bring_to_gap(next, random.small_gap());
@@ -72,11 +72,11 @@ QueriedConfigurations make_configurations(CheckerScene& scene, SoakRandom& rando
       const auto one = static_cast<std::size_t>(random.whole(0, static_cast<int>(next.size()) - 1));
       for (std::size_t i = 0; i < next.size(); ++i) {
         if (is_one && i != one) continue;
-        next[i] += far * random.uniform(-1.0, 1.0);
+        next[i] += far * random.between(-1.0, 1.0);
       }
     } else if (kind < 0.9) {
       next = last;
-      for (double& position : next) position += random.uniform(-0.01, 0.01);
+      for (double& position : next) position += random.between(-0.01, 0.01);
     } else {
       next = scene.anywhere(random);
     }

@@ -42,7 +42,7 @@ Edge make_edge(TreeScene& scene, SoakRandom& random) {
   edge.meeting = random.chance(0.1) ? random.whole(0, 1) : random.unit();
   const double length = random.magnitude(1e-3, 2.0);
   for (const double position : there) {
-    const double change = random.chance(0.2) ? 0.0 : length * random.uniform(-1.0, 1.0);
+    const double change = random.chance(0.2) ? 0.0 : length * random.between(-1.0, 1.0);
     edge.from.push_back(position - edge.meeting * change);
     edge.to.push_back(edge.from.back() + change);
   }
@@ -77,14 +77,14 @@ Edge make_edge(CheckerScene& scene, SoakRandom& random,
   edge.is_near = border && random.chance(0.8);
   std::vector<double> direction;
   for (std::size_t i = 0; i < there.size(); ++i) {
-    direction.push_back(random.chance(0.2) ? 0.0 : random.uniform(-1.0, 1.0));
+    direction.push_back(random.chance(0.2) ? 0.0 : random.between(-1.0, 1.0));
   }
   if (edge.is_near) {
     there = border->free;
     const double back = random.chance(0.2) ? 0.0 : random.magnitude(1e-12, 0.1);
     for (std::size_t i = 0; i < there.size(); ++i) {
       there[i] -=
-          back * (border->contact[i] - border->free[i]) + 0.1 * back * random.uniform(-1.0, 1.0);
+          back * (border->contact[i] - border->free[i]) + 0.1 * back * random.between(-1.0, 1.0);
     }
     if (back > 1e-5 && random.chance(0.3)) make_tangential(scene, there, direction);
   }

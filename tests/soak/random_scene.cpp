@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 double random_size(SoakRandom& random) {
-  if (random.chance(0.85)) return random.uniform(0.05, 2.0);
+  if (random.chance(0.85)) return random.between(0.05, 2.0);
   return random.magnitude(1e-4, 1e4);
 }
 
@@ -28,7 +28,7 @@ double random_radius(SoakRandom& random, double size) {
     case 2:
       return random.magnitude(1.0, 100.0) * size;
     default:
-      return random.uniform(0.0, 0.4) * size;
+      return random.between(0.0, 0.4) * size;
   }
 }
 
@@ -49,7 +49,7 @@ std::optional<long double> pair_way(const Sphere& standing, const Sphere& mover,
 }  // namespace
 
 double SoakRandom::magnitude(double low, double high) {
-  return std::exp(uniform(std::log(low), std::log(high)));
+  return std::exp(between(std::log(low), std::log(high)));
 }
 
 Vector3d SoakRandom::in_cube(double half_side) {
@@ -68,7 +68,7 @@ Vector3d SoakRandom::direction() {
 Eigen::Quaterniond SoakRandom::rotation() {
   if (chance(0.05)) return Eigen::Quaterniond::Identity();
   const Vector3d v = in_cube(1.0);
-  Eigen::Quaterniond q(uniform(0.05, 1.0), v.x(), v.y(), v.z());
+  Eigen::Quaterniond q(between(0.05, 1.0), v.x(), v.y(), v.z());
   if (chance(0.5)) {
     q.coeffs() *= std::ldexp(1.0, whole(-60, 60));
   } else {
@@ -92,13 +92,13 @@ std::vector<Sphere> random_spheres(SoakRandom& random, int count, double size) {
   // Of the frame's origin; now and then the spheres are far from it.
   const Vector3d place =
       random.chance(0.1) ? random.in_cube(random.magnitude(1.0, 1e4) * size) : Vector3d::Zero();
-  const double radius = random.uniform(0.01, 0.3) * size;
+  const double radius = random.between(0.01, 0.3) * size;
   std::vector<Sphere> spheres{{place + random.in_cube(size), radius}};
   while (spheres.size() < static_cast<std::size_t>(count)) {
     const Sphere last = spheres.back();
     switch (family) {
       case kScattered:
-        spheres.push_back({place + random.in_cube(size), random.uniform(0.0, 0.3) * size});
+        spheres.push_back({place + random.in_cube(size), random.between(0.0, 0.3) * size});
         break;
       case kEqual:
         spheres.push_back({place + random.in_cube(size), radius});
@@ -107,10 +107,10 @@ std::vector<Sphere> random_spheres(SoakRandom& random, int count, double size) {
         spheres.push_back({random.chance(0.5)
                                ? last.center
                                : Vector3d(last.center + random.in_cube(0.1 * radius)),
-                           last.radius * random.uniform(0.8, 1.1)});
+                           last.radius * random.between(0.8, 1.1)});
         break;
       case kTouching: {
-        const double next = radius * random.uniform(0.5, 1.5);
+        const double next = radius * random.between(0.5, 1.5);
         spheres.push_back({last.center + (last.radius + next) * random.direction(), next});
         break;
       }
@@ -181,7 +181,7 @@ PosePair ScenePair::anywhere(SoakRandom& random) const {
   const Vector3d middle_a = world_from_a * a_.sphere(0).center;
   const Vector3d middle_b = Pose(turn, Vector3d::Zero()) * b_.sphere(0).center;
   const double reach = a_.sphere(0).radius + b_.sphere(0).radius;
-  const double way = reach * random.uniform(0.0, 1.3);
+  const double way = reach * random.between(0.0, 1.3);
   return {world_from_a, Pose(turn, middle_a - middle_b + way * random.direction())};
 }
 
@@ -196,7 +196,7 @@ std::optional<PosePair> ScenePair::at_gap(SoakRandom& random, double gap) const 
         random.whole(0, static_cast<int>(tree.spheres().size()) - 1))];
   };
   const Sphere from_a = pick(a_), from_b = pick(b_);
-  const double off = (from_a.radius + from_b.radius + gap) * random.uniform(0.0, 0.99);
+  const double off = (from_a.radius + from_b.radius + gap) * random.between(0.0, 0.99);
   const Vector3d start = world_from_a * from_a.center -
                          Pose(turn, Vector3d::Zero()) * from_b.center + off * random.direction();
 

@@ -19,7 +19,6 @@ class SoakRandom : public Random {
  public:
   using Random::Random;
 
-  double unit() { return uniform(0.0, 1.0); }
   bool chance(double share) { return unit() < share; }
   // As many of each order of magnitude.
   double magnitude(double low, double high);

@@ -75,7 +75,7 @@ std::shared_ptr<const SphereTree> body_tree(SoakRandom& random, double size) {
   std::vector<Sphere> spheres;
   const Eigen::Vector3d along = 0.5 * size * random.direction();
   for (int i = 0; i < count; ++i) {
-    const double radius = random.chance(0.1) ? 0.0 : size * random.uniform(0.01, 0.1);
+    const double radius = random.chance(0.1) ? 0.0 : size * random.between(0.01, 0.1);
     spheres.push_back({along * random.unit() + random.in_cube(0.1 * size), radius});
   }
   if (random.chance(0.1)) spheres[0].center.setZero();
@@ -88,7 +88,7 @@ TriangleMesh tetrahedron(SoakRandom& random, double size) {
   const Eigen::Vector3d place = random.in_cube(0.3 * size);
   mesh.vertices = {place, place + size * Eigen::Vector3d::UnitX(),
                    place + size * Eigen::Vector3d::UnitY(),
-                   place + size * random.uniform(0.1, 1.0) * Eigen::Vector3d::UnitZ()};
+                   place + size * random.between(0.1, 1.0) * Eigen::Vector3d::UnitZ()};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
   return mesh;
 }
@@ -122,9 +122,9 @@ RobotScene TreeScene::scene() const {
 }
 
 std::vector<double> TreeScene::anywhere(SoakRandom& random) const {
-  std::vector<double> configuration{random.uniform(-3.0, 3.0)};
+  std::vector<double> configuration{random.between(-3.0, 3.0)};
   for (int i = 1; i < robot_.variable_count(); ++i) {
-    configuration.push_back(random.uniform(-std::numbers::pi, std::numbers::pi));
+    configuration.push_back(random.between(-std::numbers::pi, std::numbers::pi));
   }
   return configuration;
 }
@@ -230,9 +230,9 @@ RobotModel CheckerScene::make_robot(SoakRandom& random) {
   for (std::size_t i = 1; i < moving.size(); ++i) {
     if (!random.chance(0.15)) continue;
     const double multiplier =
-        random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.uniform(-2.0, 2.0);
-    double offset = random.chance(0.5) ? 0.0 : random.uniform(-3.0, 3.0);
-    if (random.chance(0.1)) offset = std::clamp(-multiplier * random.uniform(-3.0, 3.0), -1e5, 1e5);
+        random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.between(-2.0, 2.0);
+    double offset = random.chance(0.5) ? 0.0 : random.between(-3.0, 3.0);
+    if (random.chance(0.1)) offset = std::clamp(-multiplier * random.between(-3.0, 3.0), -1e5, 1e5);
     robot.mimic(moving[i], moving[i - 1], multiplier, offset);
   }
   return robot;
@@ -274,7 +274,7 @@ void CheckerScene::make_bodies(SoakRandom& random) {
 ObstacleShape CheckerScene::make_shape(SoakRandom& random) const {
   const auto length = [&] {
     const double kind = random.unit();
-    return size_ * (kind < 0.7    ? random.uniform(0.05, 0.8)
+    return size_ * (kind < 0.7    ? random.between(0.05, 0.8)
                     : kind < 0.85 ? random.magnitude(1e-8, 1e-2)
                                   : random.magnitude(1.0, 300.0));
   };
@@ -310,7 +310,7 @@ void CheckerScene::make_obstacles(SoakRandom& random) {
       if (const auto* const sphere = std::get_if<SolidSphere>(primitive)) radius = sphere->radius;
       if (const auto* const solid = std::get_if<Capsule>(primitive)) radius = solid->radius;
     }
-    const Eigen::Vector3d at = (radius + size_ * random.uniform(0.3, 2.0)) * random.direction();
+    const Eigen::Vector3d at = (radius + size_ * random.between(0.3, 2.0)) * random.direction();
     const Pose world_from_shape =
         world_from_root_ *
         Pose(random.chance(0.2) ? Eigen::Quaterniond::Identity() : random.rotation(), at);
@@ -411,8 +411,8 @@ std::vector<double> CheckerScene::anywhere(SoakRandom& random) const {
   for (const int j : robot().variable_joints()) {
     const bool turns = robot().joints()[static_cast<std::size_t>(j)].turns();
     const double reach =
-        turns ? far : std::min(kLargestJointPosition, random.uniform(0.2, 2.0) * size_);
-    configuration.push_back(random.uniform(-reach, reach));
+        turns ? far : std::min(kLargestJointPosition, random.between(0.2, 2.0) * size_);
+    configuration.push_back(random.between(-reach, reach));
   }
   for (int i = 0; i < 60 && !in_filter_range(configuration); ++i) {
     for (double& variable : configuration) variable *= 0.5;

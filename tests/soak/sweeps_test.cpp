@@ -77,7 +77,7 @@ Course random_course(SoakRandom& random, double size) {
   }
   course.end = course.start;
   course.axis = random.in_cube(1.0) + Vector3d(0.0, 0.0, 1e-3);
-  if (random.chance(0.7)) course.angle = random.uniform(-8.0, 8.0) * random.magnitude(1e-4, 1.0);
+  if (random.chance(0.7)) course.angle = random.between(-8.0, 8.0) * random.magnitude(1e-4, 1.0);
   if (random.chance(0.7)) {
     course.displacement = random.magnitude(1e-2, 10.0) * size * random.direction();
   }
@@ -126,7 +126,7 @@ class SweepCheck {
   void run(SoakRandom& random) {
     const bool is_wall = random.chance(kWalls);
     const double size =
-        random.chance(0.9) ? random.uniform(0.05, 2.0) : random.magnitude(1e-3, 1e3);
+        random.chance(0.9) ? random.between(0.05, 2.0) : random.magnitude(1e-3, 1e3);
     const int count = random.chance(0.97) ? random.whole(1, 8) : random.whole(9, 60);
     const SphereTree a = random_tree(random, count, is_wall ? 0.05 : size);
     const SphereTree b =

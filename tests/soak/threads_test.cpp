@@ -47,7 +47,7 @@ CheckedPath random_path(const TreeScene& robot, SoakRandom& random) {
   const auto edges = static_cast<std::ptrdiff_t>(path.configurations.size() / path.count * 40);
   path.from.assign(path.configurations.begin(), path.configurations.begin() + edges);
   path.to = path.from;
-  for (double& position : path.to) position += random.uniform(-0.1, 0.1);
+  for (double& position : path.to) position += random.between(-0.1, 0.1);
   return path;
 }
 
@@ -148,7 +148,7 @@ TEST(Threads, AskACheckerWhileItsSceneIsEdited) {
 TEST(Threads, FitAtOnce) {
   SoakRandom random(seeded(7));
   for (int fit = 0; fit < scaled(1); ++fit) {
-    const TriangleMesh mesh = make_box({1.0, random.uniform(0.3, 1.0), random.uniform(0.3, 1.0)});
+    const TriangleMesh mesh = make_box({1.0, random.between(0.3, 1.0), random.between(0.3, 1.0)});
     const std::vector<Sphere> expected = fitted(mesh, 1);
     std::vector<std::vector<Sphere>> made(2);
     run_at_once(3, [&](std::size_t i) {
