@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tests/support/fcl_solid.h"
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
 #include "spheretree/sphere_tree.h"
+#include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Core>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What certify() says of sets whose leaks and protrusion are known, and what it refuses.
-#include "simplifier/simplify.h"
-
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/repair.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

@@ -5,10 +5,10 @@
 
 #include "geometry/mesh_distance.h"
 #include "simplifier/internal/stages.h"
+#include "simplifier/simplify.h"
 #include "simplifier/stage2/cover_blocks.h"
 #include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/stage2/cover_problem.h"
-#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

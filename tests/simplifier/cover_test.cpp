@@ -2,9 +2,8 @@
 // cover() by both methods before judges that share no code with it: that S is covered (G1), proved
 // again by an octree and by samples, and that nothing protrudes by more than E (G2). Then what is
 // particular to the paper's loop, and what the spheres of a cover are for.
-#include "simplifier/simplify.h"
-
 #include "simplifier/cover_breakdown.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"

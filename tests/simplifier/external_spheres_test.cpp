@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // External spheres are free of the padded mesh, are where a tool of the least diameter can get, and
 // nowhere else.
-#include "simplifier/simplify.h"
-
 #include "geometry/mesh_distance.h"
 #include "simplifier/internal/stages.h"
+#include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

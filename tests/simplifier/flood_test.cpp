@@ -3,8 +3,8 @@
 // ways whose width is known, and places among random blocks to which a finer flood of exact
 // distances gets, in zones of a smaller D too. Large spheres stand for the finest cells beside
 // surfaces.
-#include "simplifier/stage1/flood_refinement.h"
 #include "simplifier/simplify.h"
+#include "simplifier/stage1/flood_refinement.h"
 #include "simplifier/types/zones.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"

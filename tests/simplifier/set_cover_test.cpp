@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Set cover: the greedy algorithm against its definition and against every subset, and the searches
 // from there.
-#include "simplifier/stage2/search/cover_search.h"
 #include "simplifier/simplify.h"
+#include "simplifier/stage2/search/cover_search.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>

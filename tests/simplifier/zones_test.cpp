@@ -4,8 +4,8 @@
 #include "simplifier/types/zones.h"
 
 #include "simplifier/concave_edges.h"
-#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/simplify.h"
+#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/zone_file.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"

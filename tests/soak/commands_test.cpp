@@ -3,7 +3,6 @@
 // one, whole. What C libraries take by malloc() does not run out.
 #include "base/error.h"
 #include "base/files.h"
-#include "tests/support/shapes.h"
 #include "io/mesh_io.h"
 #include "io/sphere_file.h"
 #include "spheretree/build.h"
@@ -11,6 +10,7 @@
 #include "tests/soak/random_scene.h"
 #include "tests/soak/scale.h"
 #include "tests/support/child_process.h"
+#include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
 

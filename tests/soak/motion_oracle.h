@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tests/support/exact/poses.h"
 #include "tests/soak/random_scene.h"
+#include "tests/support/exact/poses.h"
 
 #include <cmath>
 #include <cstddef>

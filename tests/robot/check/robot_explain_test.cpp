@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What touches what: non-empty exactly if the robot collides, and what is said of each contact.
-
 #include "base/error.h"
 #include "collide/collide.h"
+#include "robot/check/robot_collision.h"
+#include "robot/check/robot_scene.h"
+#include "robot/check/scene_setup.h"
 #include "robot/model/kinematics.h"
+#include "robot/pairs/allowed_collisions.h"
+#include "spheretree/build.h"
+#include "tests/robot/box_robots.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
@@ -19,10 +23,14 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
+
+// What touches what: non-empty exactly if the robot collides, and what is said of each contact.
 
 namespace spherule::test::robot_explain_test {
 namespace {
@@ -292,3 +300,235 @@ TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
 
 }  // namespace
 }  // namespace spherule::test::robot_explain_test
+
+// Clearances that pass over what is proved free.
+
+namespace spherule::test {
+namespace {
+
+using Configuration = std::vector<double>;
+
+// Two thin bars one above the other, each in a sphere, that turn about one axis: the spheres
+// overlap in all configurations, the bars touch in none. A post stands away from both.
+class ClearanceScene : public testing::Test {
+ protected:
+  ClearanceScene() {
+    for (const int link : {1, 2}) {
+      const double height = 0.03 * link;
+      robot_.model.attach(robot_.model.links()[static_cast<std::size_t>(link)].name,
+                          std::make_shared<const SphereTree>(build_tree(
+                              std::vector<Sphere>{{{0.4, 0.0, height + 0.01}, kRadius}})));
+    }
+    scene_.emplace(robot_.model);
+    scene_->add("post", SolidSphere{0.1}, Pose::from_translation({1.5, 0.0, 0.04}));
+  }
+
+  RobotClearance clearance(const Configuration& configuration, const ClearanceRequest& request) {
+    const RobotChecker checker = scene_->snapshot();
+    RobotChecker::Scratch scratch(checker);
+    return checker.clearance(configuration, scratch, request);
+  }
+
+  static constexpr double kRadius = 0.21;
+  BoxRobot robot_ = two_turning_bars(0.03);
+  std::optional<RobotScene> scene_;
+};
+
+TEST_F(ClearanceScene, SkipsWhatIsProvedFreeOnRequest) {
+  const ClearanceRequest skipping{.skip_proved_free = true};
+  const Configuration aligned{0.0, 0.0};
+  EXPECT_EQ(clearance(aligned, skipping).lower, 0.0) << "nothing is proved";
+  EXPECT_FALSE(clearance(aligned, skipping).skipped);
+
+  scene_->set_link_pairs(
+      std::make_shared<const LinkPairs>(prove_link_pairs(robot_.model, robot_.bodies)));
+  EXPECT_EQ(clearance(aligned, {}).lower, 0.0);
+  EXPECT_FALSE(clearance(aligned, {}).skipped);
+  // The post is 1.1 m from either centre.
+  const RobotClearance rest = clearance(aligned, skipping);
+  EXPECT_TRUE(rest.skipped);
+  EXPECT_EQ(rest.second.name, "post");
+  EXPECT_LE(rest.lower, 1.1 - 0.1 - kRadius);
+  EXPECT_NEAR(rest.lower, 1.1 - 0.1 - kRadius, 1e-9);
+  // Beyond the limits nothing is proved.
+  EXPECT_EQ(clearance({1.5, 1.5}, skipping).lower, 0.0);
+  EXPECT_FALSE(clearance({1.5, 1.5}, skipping).skipped);
+  // Nothing else is left where the post is gone.
+  scene_->remove("post");
+  EXPECT_EQ(clearance(aligned, skipping).lower, std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace spherule::test
+
+namespace spherule::test::pair_status_test {
+namespace {
+
+// Boxes that slide along x: a sled on the floor, on it a cart that can reach the floor's box, a
+// bumper fixed to that, and a bird that is 5 m above.
+BoxRobot slides() {
+  BoxRobot robot{RobotModel("floor")};
+  const auto slide = [](const char* name, double lower) {
+    return Joint{.name = name,
+                 .type = JointType::kPrismatic,
+                 .axis = Eigen::Vector3d::UnitX(),
+                 .lower = lower,
+                 .upper = 1.0};
+  };
+  robot.model.add_link("sled", "floor", slide("push", 0.5));
+  robot.model.add_link("cart", "sled", slide("pull", -1.0));
+  robot.model.add_link("bumper", "cart", {.name = "screw", .type = JointType::kFixed});
+  robot.model.add_link("bird", "cart", slide("fly", 0.0));
+  for (const char* const name : {"floor", "sled", "cart", "bumper", "bird"}) {
+    const int link = robot.model.find_link(name);
+    const Eigen::Vector3d center(0, 0, std::string(name) == "bird" ? 5.0 : 0.0);
+    robot.add_boxes(link, {{center.array() - 0.1, center.array() + 0.1}});
+    robot.model.attach(
+        name, std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, 0.2}})));
+  }
+  return robot;
+}
+
+std::string kind(const RobotModel& robot, const std::vector<PairStatus>& pairs, const char* a,
+                 const char* b) {
+  const int first = robot.find_link(a);
+  const int second = robot.find_link(b);
+  for (const PairStatus& pair : pairs) {
+    if (pair.first == first && pair.second == second) return std::string(kind_of(pair));
+  }
+  return "missing";
+}
+
+TEST(PairStatus, KindsAreToldApart) {
+  const BoxRobot robot = slides();
+  const auto proofs =
+      std::make_shared<const LinkPairs>(prove_link_pairs(robot.model, robot.bodies));
+  AllowedCollisions allowed(robot.model);
+  allowed.allow("floor", "bumper");
+  const std::vector<PairStatus> pairs = pair_statuses(robot.model, allowed, proofs);
+  ASSERT_EQ(pairs.size(), 10U);
+  EXPECT_EQ(kind(robot.model, pairs, "cart", "bumper"), "rigid");
+  EXPECT_EQ(kind(robot.model, pairs, "floor", "sled"), "adjacent");
+  EXPECT_EQ(kind(robot.model, pairs, "floor", "bumper"), "given");
+  EXPECT_EQ(kind(robot.model, pairs, "floor", "cart"), "free in boxes");
+  EXPECT_EQ(kind(robot.model, pairs, "floor", "bird"), "proved never");
+  for (const PairStatus& pair : pairs) {
+    EXPECT_EQ(pair.verdict.has_value(), pair.reason != AllowedReason::kRigid);
+    EXPECT_EQ(pair.free_share == 1.0, pair.verdict == PairVerdict::kNever);
+  }
+
+  const std::vector<PairStatus> unproved = pair_statuses(robot.model, allowed, nullptr);
+  EXPECT_EQ(kind(robot.model, unproved, "floor", "cart"), "tested");
+  EXPECT_EQ(kind(robot.model, unproved, "floor", "bumper"), "given");
+  EXPECT_THROW(pair_statuses(RobotModel("floor"), allowed, proofs), Error);
+}
+
+TEST(PairStatus, WhereNoBoxIsFreeTheVerdictIsTheKind) {
+  PairStatus status;
+  EXPECT_EQ(kind_of(status), "tested");
+  status.verdict = PairVerdict::kTouching;
+  EXPECT_EQ(kind_of(status), "can touch");
+  status.verdict = PairVerdict::kUnknown;
+  EXPECT_EQ(kind_of(status), "unknown");
+}
+
+}  // namespace
+}  // namespace spherule::test::pair_status_test
+
+// Postures of a robot by name, what touches in them, and lists of ignored pairs.
+
+namespace spherule::test::named_postures_test {
+namespace {
+
+// A block that slides towards another one on the x axis: they touch where the slide is below 0.2.
+BoxRobot slide(double lower) {
+  BoxRobot robot{RobotModel("block")};
+  robot.model.add_link("slider", "block",
+                       {.name = "slide",
+                        .type = JointType::kPrismatic,
+                        .axis = Eigen::Vector3d::UnitX(),
+                        .lower = lower,
+                        .upper = 1.0});
+  for (const int link : {0, 1}) {
+    robot.add_boxes(link, {{Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(0.1)}});
+    const std::vector<Sphere> sphere = {{Eigen::Vector3d::Zero(), 0.18}};
+    robot.model.attach(robot.model.links()[static_cast<std::size_t>(link)].name,
+                       std::make_shared<const SphereTree>(build_tree(sphere)));
+  }
+  return robot;
+}
+
+TEST(NamedPostures, ZeroIsTheNearestLimitWhereItIsBeyond) {
+  EXPECT_EQ(zero_posture(slide(-1.0).model).configuration, std::vector<double>{0.0});
+  EXPECT_EQ(zero_posture(slide(0.3).model).configuration, std::vector<double>{0.3});
+}
+
+TEST(NamedPostures, RestIsAtZeroOrInTheMiddleWhereThatIsCloseToALimit) {
+  EXPECT_EQ(rest_posture(slide(-1.0).model).configuration, std::vector<double>{0.0});
+  EXPECT_EQ(rest_posture(slide(-0.12).model).configuration, std::vector<double>{0.0});
+  EXPECT_EQ(rest_posture(slide(-0.1).model).configuration, std::vector<double>{0.45});
+  EXPECT_EQ(rest_posture(slide(0.3).model).configuration, std::vector<double>{0.65});
+}
+
+TEST(NamedPostures, StatesOfGroupsPassOverWhatIsNotThere) {
+  SemanticDescription semantics;
+  semantics.group_states = {
+      {"home", "arm", {{"slide", {0.5}}, {"nobody", {7.0}}}},
+      {"odd", "arm", {{"slide", {0.5, 0.6}}}},
+  };
+  const std::vector<NamedPosture> postures = group_postures(slide(-1.0).model, semantics);
+  ASSERT_EQ(postures.size(), 2U);
+  EXPECT_EQ(postures[0].name, "arm/home");
+  EXPECT_EQ(postures[0].configuration, std::vector<double>{0.5});
+  EXPECT_EQ(postures[1].configuration, std::vector<double>{0.0});
+}
+
+TEST(NamedPostures, ContactsTellSpheresFromMeshes) {
+  const BoxRobot robot = slide(-0.5);
+  AllowedCollisions allowed(robot.model);
+  allowed.forbid("block", "slider");
+  const std::vector<NamedPosture> postures = {{"in", {0.1}}, {"near", {0.3}}, {"far", {0.5}}};
+  const auto plain = contacts_in(postures, robot.model, robot.bodies, allowed, nullptr);
+  ASSERT_EQ(plain.size(), 2U);
+  EXPECT_EQ(plain[0].posture, "in");
+  EXPECT_TRUE(plain[0].do_meshes_touch);
+  EXPECT_NEAR(plain[0].overlap_depth, 0.26, 1e-6);
+  EXPECT_EQ(plain[1].posture, "near");
+  EXPECT_FALSE(plain[1].do_meshes_touch);
+  EXPECT_FALSE(plain[1].is_proved_free);
+  const auto pairs = std::make_shared<const LinkPairs>(prove_link_pairs(robot.model, robot.bodies));
+  const auto proved = contacts_in(postures, robot.model, robot.bodies, allowed, pairs);
+  ASSERT_EQ(proved.size(), 2U);
+  EXPECT_TRUE(proved[0].do_meshes_touch);
+  EXPECT_FALSE(proved[0].is_proved_free);
+  EXPECT_TRUE(proved[1].is_proved_free);
+}
+
+TEST(IgnoredPairs, AreAddedOnceInEitherOrder) {
+  const RobotModel robot = slide(0.3).model;
+  std::vector<DisabledPair> known = {{"slider", "block", "User"}};
+  const std::vector<DisabledPair> more = {{"block", "slider", "Never"}, {"block", "nobody", ""}};
+  add_missing_pairs(more, robot, known);
+  ASSERT_EQ(known.size(), 1U);
+  EXPECT_EQ(known[0].reason, "User");
+  known.clear();
+  add_missing_pairs(more, robot, known);
+  ASSERT_EQ(known.size(), 1U);
+  EXPECT_EQ(known[0].reason, "Never");
+}
+
+TEST(IgnoredPairs, AreThoseProvedNeverToTouch) {
+  const auto never = [](double lower) {
+    const BoxRobot robot = slide(lower);
+    return pairs_proved_never(robot.model, prove_link_pairs(robot.model, robot.bodies));
+  };
+  EXPECT_TRUE(never(0.1).empty());
+  const std::vector<DisabledPair> found = never(0.3);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].link_a, "block");
+  EXPECT_EQ(found[0].link_b, "slider");
+  EXPECT_EQ(found[0].reason, kProvedNeverReason);
+}
+
+}  // namespace
+}  // namespace spherule::test::named_postures_test

@@ -4,19 +4,33 @@
 #include "base/error.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"
+#include "robot/cover/audit_robot.h"
+#include "robot/cover/link_parts.h"
+#include "robot/cover/primitive_mesh.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/files/urdf.h"
 #include "tests/robot/cover/cover_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <mutex>
+#include <set>
+#include <span>
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace spherule::test {
@@ -229,6 +243,227 @@ TEST(LinkMesh, RefusesWhatHasNoMesh) {
   EXPECT_TRUE(has(refusal(link_of(file, {1, kInfinity, 1})), "must be finite"));
   EXPECT_TRUE(has(refusal(link_of(file, {1, 1e16, 1})), "box.stl as scaled: vertex"));
   EXPECT_TRUE(has(refusal(link_of(folder.path() / "none.stl", {1, 1, 1})), "no such file"));
+}
+
+}  // namespace
+}  // namespace spherule::test
+
+// Links of the same shapes are covered and audited once, with the answers of each alone.
+
+namespace spherule::test::equal_links_test {
+namespace {
+
+// A palm, and links on it with these shapes; beside it a.stl and b.stl, which nothing reads.
+RobotDescription hand(const std::vector<std::string>& shapes) {
+  const TempDir folder;
+  for (const char* name : {"a.stl", "b.stl"}) folder.write(name, "");
+  std::string text = R"(<robot name="hand"><link name="palm"/>)";
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::string name = "finger" + std::to_string(i);
+    text += "<link name='" + name + "'>" + shapes[i] + "</link><joint name='of " + name +
+            "' type='fixed'><parent link='palm'/><child link='" + name + "'/></joint>";
+  }
+  return read_urdf(folder.write("hand.urdf", text + "</robot>"));
+}
+
+std::string collision(const std::string& geometry, const std::string& origin = "") {
+  return "<collision>" + origin + "<geometry>" + geometry + "</geometry></collision>";
+}
+
+const std::string kBar = collision("<box size='0.2 0.01 0.01'/>");
+const std::string kShortBar = collision("<box size='0.1 0.01 0.01'/>");
+
+TEST(EqualLinks, EachNumberOfAShapeCounts) {
+  const std::vector<std::string> different = {
+      kBar,
+      kShortBar,
+      kBar + kBar,
+      collision("<box size='0.2 0.01 0.01'/>", "<origin xyz='0 0 0.1'/>"),
+      collision("<box size='0.2 0.01 0.01'/>", "<origin rpy='0 0 0.1'/>"),
+      collision("<sphere radius='0.2'/>"),
+      collision("<cylinder radius='0.2' length='0.01'/>"),
+      collision("<cylinder radius='0.2' length='0.02'/>"),
+      collision("<mesh filename='a.stl'/>"),
+      collision("<mesh filename='b.stl'/>"),
+      collision("<mesh filename='a.stl' scale='1 1 2'/>"),
+  };
+  std::vector<std::string> twice = different;
+  twice.insert(twice.end(), different.rbegin(), different.rend());
+  const RobotDescription robot = hand(twice);
+  const std::vector<std::size_t> first =
+      internal::first_equal_links(robot, LinkGeometry::kCollision);
+  ASSERT_EQ(first.size(), 1 + twice.size());
+  EXPECT_EQ(first[0], 0U);
+  for (std::size_t i = 0; i < different.size(); ++i) {
+    EXPECT_EQ(first[1 + i], 1 + i);
+    EXPECT_EQ(first[twice.size() - i], 1 + i) << different[i];
+  }
+  // None has any visual geometry.
+  const std::vector<std::size_t> bare = internal::first_equal_links(robot, LinkGeometry::kVisual);
+  for (std::size_t i = 0; i < bare.size(); ++i) EXPECT_EQ(bare[i], i);
+}
+
+TEST(EqualLinks, AreCoveredOnceAndAsAlone) {
+  RobotCoverOptions options{.max_error = 0.01, .effort = 0};
+  options.links["finger4"].max_error = 0.02;
+  options.links["finger6"].min_external_diameter = 0.05;
+  options.links["finger7"].padding = 0.001;
+  options.links["finger8"].zones = {
+      {.shape = Eigen::AlignedBox3d(Eigen::Vector3d(0, -1, -1), Eigen::Vector3d(1, 1, 1)),
+       .max_error = 0.008}};
+  std::mutex mutex;
+  std::set<std::string> covered;
+  options.progress = [&](double, const char* link) {
+    const std::lock_guard lock(mutex);
+    covered.insert(link);
+  };
+  const RobotCover cover =
+      cover_robot(hand({kBar, kShortBar, kBar, kShortBar, kBar, kBar, kBar, kBar, kBar}), options);
+  EXPECT_EQ(covered, (std::set<std::string>{"finger0", "finger1", "finger4", "finger6", "finger7",
+                                            "finger8"}));
+  const auto alone = [](const std::string& shape, double max_error) {
+    return cover_robot(hand({shape}), {.max_error = max_error, .effort = 0}).links[1].spheres;
+  };
+  EXPECT_TRUE(cover.links[0].spheres.empty());
+  for (const std::size_t link : {1UL, 3UL, 6UL}) {
+    EXPECT_EQ(cover.links[link].spheres, alone(kBar, 0.01)) << link;
+    EXPECT_EQ(cover.links[link].link, "finger" + std::to_string(link - 1));
+    EXPECT_EQ(cover.links[link].fit->certificate.covered, true);
+    EXPECT_EQ(cover.links[link].seconds == 0.0, link != 1) << link;
+  }
+  for (const std::size_t link : {2UL, 4UL}) {
+    EXPECT_EQ(cover.links[link].spheres, alone(kShortBar, 0.01)) << link;
+  }
+  EXPECT_EQ(cover.links[5].spheres, alone(kBar, 0.02));
+  EXPECT_NE(cover.links[5].spheres, cover.links[1].spheres);
+}
+
+TEST(EqualLinks, AreAuditedAndRepairedEachWithItsOwnSpheres) {
+  const RobotDescription robot = hand({kBar, kBar, kBar, kShortBar});
+  const std::vector<Sphere> ball = {{{0, 0, 0}, 0.11}};
+  const std::vector<Sphere> small_ball = {{{0, 0, 0}, 0.06}};
+  const std::vector<LinkSpheres> spheres = {
+      {"finger0", ball}, {"finger1", small_ball}, {"finger2", ball}, {"finger3", small_ball}};
+  const RobotAudit audit = audit_robot(robot, spheres);
+  ASSERT_EQ(audit.links.size(), 5U);
+  EXPECT_FALSE(audit.links_covered);
+  const std::vector<bool> is_covered = {true, false, true, true};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(audit.links[1 + i].link, "finger" + std::to_string(i));
+    EXPECT_EQ(audit.links[1 + i].certificate->covered, is_covered[i]) << i;
+  }
+  const RobotRepair repair = repair_robot(robot, spheres, {.max_error = 0.06});
+  ASSERT_EQ(repair.links.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(repair.links[i].link, "finger" + std::to_string(i));
+    EXPECT_TRUE(repair.links[i].certificate.covered) << i;
+    EXPECT_EQ(repair.links[i].repair.spheres, repair.spheres[i].spheres);
+    EXPECT_EQ(repair.spheres[i].spheres == spheres[i].spheres, is_covered[i]) << i;
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test::equal_links_test
+
+namespace spherule::test {
+namespace {
+
+using Eigen::Vector3d;
+using internal::lie_in_single_spheres;
+
+LinkShape shape_of(const Primitive& primitive, const Pose& pose = {}) {
+  return {.name = "", .link_from_shape = pose, .geometry = primitive};
+}
+
+// The largest distance from a point to one of the primitive, in its own frame.
+struct Farthest {
+  const WidePoint& from;
+
+  Wide operator()(const Box& box) const {
+    return (from.cwiseAbs() + box.size.cast<Wide>() / 2).norm();
+  }
+  Wide operator()(const SolidSphere& sphere) const { return from.norm() + sphere.radius; }
+  Wide operator()(const Cylinder& cylinder) const {
+    return std::hypot(std::hypot(from.x(), from.y()) + cylinder.radius,
+                      std::abs(from.z()) + Wide(cylinder.length) / 2);
+  }
+  Wide operator()(const Capsule& capsule) const {
+    return std::hypot(from.x(), from.y(), std::abs(from.z()) + Wide(capsule.length) / 2) +
+           capsule.radius;
+  }
+  Wide operator()(const HalfSpace&) const { return 0; }
+};
+
+// Radii step by step through the limit: never held by less, and held by hardly more.
+TEST(ShapesInSpheres, ExactlyWhatLiesInASphereUpToRounding) {
+  Random random(3);
+  for (int i = 0; i < effort(2000, 200); ++i) {
+    const double size = std::pow(10.0, random.between(-3, 3));
+    const Primitive primitive = random_primitive(random, size);
+    const Pose pose =
+        random_pose(random, i % 3 == 0 ? 0.0 : size * std::pow(10.0, random.between(0, 3)));
+    const double away = i % 5 == 0 ? 0.0 : size * random.between(0, 3);
+    const Vector3d center = pose.translation() + away * random.direction();
+    const WidePoint own = unmove(pose, center.cast<Wide>());
+    const Wide limit = std::visit(Farthest{own}, primitive);
+    const double scene = size + center.norm() + pose.translation().norm();
+    for (int k = -40; k <= 40; ++k) {
+      const double radius = static_cast<double>(limit) + k * 1e-17 * scene;
+      const bool held = lie_in_single_spheres(std::array{shape_of(primitive, pose)},
+                                              std::array{Sphere{center, radius}});
+      // The oracle is off by less than 2^-60 of the scene.
+      ASSERT_FALSE(held && Wide(radius) < limit - Wide(scene) * 0x1p-60L) << "case " << i;
+    }
+    const Sphere more{center, static_cast<double>(limit) + 1e-13 * scene};
+    ASSERT_TRUE(lie_in_single_spheres(std::array{shape_of(primitive, pose)}, std::array{more}))
+        << "case " << i;
+  }
+}
+
+TEST(ShapesInSpheres, ASphereLiesInItselfAndNoMeshDoes) {
+  const Pose pose(Eigen::Quaterniond(1, 2, 3, 4), {0.1, -0.3, 0.7});
+  const std::vector<LinkShape> shape{shape_of(SolidSphere{0.1}, pose)};
+  EXPECT_TRUE(lie_in_single_spheres(shape, std::array{Sphere{pose.translation(), 0.1}}));
+  const double less = std::nextafter(0.1, 0.0);
+  EXPECT_FALSE(lie_in_single_spheres(shape, std::array{Sphere{pose.translation(), less}}));
+  EXPECT_FALSE(lie_in_single_spheres(shape, {}));
+  const LinkShape mesh{.name = "", .geometry = MeshFile{"part.stl", Vector3d::Ones()}};
+  EXPECT_FALSE(lie_in_single_spheres(std::array{mesh}, std::array{Sphere{Vector3d::Zero(), 1e6}}));
+}
+
+// Every shape needs one sphere that holds all of it.
+TEST(ShapesInSpheres, AChainOfCapsules) {
+  std::vector<LinkShape> shapes;
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 12; ++i) {
+    const auto middle = Pose::from_translation({0.1 * i, 0.0, 0.0});
+    shapes.push_back(shape_of(Capsule{.radius = 0.02, .length = 0.06}, middle));
+    spheres.push_back({middle.translation(), 0.0501});
+  }
+  EXPECT_TRUE(lie_in_single_spheres(shapes, spheres));
+  std::ranges::reverse(spheres);
+  EXPECT_TRUE(lie_in_single_spheres(shapes, spheres));
+  spheres[5].radius = 0.0499;
+  EXPECT_FALSE(lie_in_single_spheres(shapes, spheres));
+}
+
+// Six spheres at the corners of an octahedron overlap in threes and leave a cavity between them,
+// which belongs to the inside and is covered by none.
+TEST(ShapesInSpheres, ACavityBetweenThemIsNotHeld) {
+  std::vector<LinkShape> shapes;
+  std::vector<Sphere> spheres;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0}) {
+      const Vector3d center = side * Vector3d::Unit(axis);
+      shapes.push_back(shape_of(SolidSphere{0.9}, Pose::from_translation(center)));
+      spheres.push_back({center, 0.9});
+    }
+  }
+  EXPECT_FALSE(lie_in_single_spheres(shapes, spheres));
+  EXPECT_TRUE(lie_in_single_spheres(std::span(shapes).first(3), spheres));
+  // One sphere that holds all of them encloses none.
+  spheres.insert(spheres.begin(), {Vector3d::Zero(), 2.0});
+  EXPECT_TRUE(lie_in_single_spheres(shapes, spheres));
 }
 
 }  // namespace

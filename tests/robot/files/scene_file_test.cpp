@@ -2,11 +2,17 @@
 #include "robot/files/scene_file.h"
 
 #include "base/error.h"
+#include "robot/files/point_cloud_file.h"
 #include "tests/support/temp_dir.h"
 
+#include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <string>
 
 namespace spherule::test {
@@ -238,6 +244,249 @@ TEST_F(SceneFileTest, RefusesFaultyValues) {
   expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "mesh": {"file": "c"},
                                       "max_error": 0}])"),
                "max_error: is not above 0");
+}
+
+using Eigen::Vector3d;
+
+class PointCloudFileTest : public testing::Test {
+ protected:
+  PointCloudFile read(const std::string& name, std::string_view bytes, double scale = 1.0) const {
+    return read_point_cloud(folder_.write(name, bytes), scale);
+  }
+  std::string fault(const std::string& name, std::string_view bytes, double scale = 1.0) const {
+    try {
+      read(name, bytes, scale);
+    } catch (const Error& error) {
+      return error.reason();
+    }
+    return "none";
+  }
+
+  const TempDir folder_;
+};
+
+template <class Value>
+void append(std::string& bytes, Value value, bool big_endian) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  if (big_endian == (std::endian::native == std::endian::little))
+    std::reverse(raw, raw + sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+const std::vector<Vector3d> kPoints = {{1.0, 2.0, 3.0}, {-0.5, 0.25, 1e6}};
+
+TEST_F(PointCloudFileTest, Text) {
+  const PointCloudFile cloud = read("scan.XYZ", "# x y z\n1 2 3 255 0 0\n-0.5,0.25,1e6\n");
+  EXPECT_EQ(cloud.points, kPoints);
+  EXPECT_GE(cloud.point_error, 1e6 * 0x1p-53);
+  EXPECT_LE(cloud.point_error, 1e6 * 0x1p-50);
+}
+
+// A lone CR ends a line, as it does where old programs wrote the file; CR LF is one end.
+TEST_F(PointCloudFileTest, LinesEndWithEitherCharacterOrBoth) {
+  const std::vector<Vector3d> points = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  for (const std::string end : {"\n", "\r", "\r\n"}) {
+    EXPECT_EQ(read("scan.xyz", "# x y z" + end + "1 2 3" + end + "4 5 6" + end + "7 8 9").points,
+              points);
+    EXPECT_EQ(fault("scan.xyz", "1 2 3" + end + end + "4 5 6 # a" + end + "7 8" + end),
+              "line 4: has no x, y and z");
+    EXPECT_EQ(fault("scan.ply", "ply" + end + "format ascii 2.0" + end + "end_header" + end),
+              "line 2: '2.0' is not version 1.0 of the format");
+  }
+  EXPECT_EQ(read("scan.xyz", "1 2 3\r4 5 6\n7 8 9\r\n").points, points);
+}
+
+TEST_F(PointCloudFileTest, CommasThatMayBeOfDecimalsAreRefused) {
+  const std::string reason =
+      "has commas beside other separators; numbers are separated by commas, by semicolons or by "
+      "blanks, and their decimals are after a point";
+  for (const std::string line : {"0,300;0,010;0,020", "0,300 0,010 0,020", "0,300\t0,010\t0,020",
+                                 "0,3 ; 0,1 ; 0,2", "1 2,3"}) {
+    EXPECT_EQ(fault("scan.csv", "1 2 3\n" + line + "\n"), "line 2: " + reason) << line;
+  }
+  for (const std::string line : {"1,2,3", "1, 2 ,\t3", "1;2;3", "1 ; 2; 3", "1 2 3 # 4,5;6",
+                                 "1 2 3 4,5", "1,2,3,panel of a wall; 7"}) {
+    EXPECT_EQ(read("scan.csv", line).points, std::vector{Vector3d(1, 2, 3)}) << line;
+  }
+}
+
+// As scanners write these files, and no others.
+TEST_F(PointCloudFileTest, PtsMayBeginWithTheirNumber) {
+  const std::vector<Vector3d> points = {{1, 2, 3}, {4, 5, 6}};
+  EXPECT_EQ(read("scan.pts", "2\n1 2 3 -1200 9 9 9\n4 5 6 -1200 9 9 9\n").points, points);
+  EXPECT_EQ(read("scan.PTS", " 2 \r1 2 3\r4 5 6").points, points);
+  EXPECT_EQ(read("scan.pts", "1 2 3\n4 5 6\n").points, points);
+  for (const std::string count : {"1", "3", "-2"}) {
+    EXPECT_EQ(fault("scan.pts", count + "\n1 2 3\n4 5 6\n"),
+              "its first line says " + count + " points, but it has 2");
+  }
+  EXPECT_EQ(fault("scan.pts", "2.5\n1 2 3\n"), "line 1: has no x, y and z");
+  EXPECT_EQ(fault("scan.pts", "1\n1 2 3\n1\n1 2 3\n"), "line 3: has no x, y and z");
+  EXPECT_EQ(fault("scan.xyz", "2\n1 2 3\n4 5 6\n"), "line 1: has no x, y and z");
+}
+
+TEST_F(PointCloudFileTest, ScalesAndSaysWhatThatCosts) {
+  const PointCloudFile cloud = read("scan.txt", "1 2 3\n", 0.001);
+  EXPECT_EQ(cloud.points[0], Vector3d(1.0, 2.0, 3.0) * 0.001);
+  EXPECT_GE(cloud.point_error, 0.003 * 0x1p-52);
+}
+
+using Integer = boost::multiprecision::cpp_int;
+using Rational = boost::multiprecision::cpp_rational;
+
+const Rational kShift = Rational(pow(Integer(10), 40));
+
+// A decimal between a number and the middle to the next one, so that it is read as that number,
+// with nearly the largest error.
+std::string just_below_the_middle(double number) {
+  const Rational next(std::nextafter(number, 2.0 * number));
+  const Rational value = number + (next - number) * Rational(499'999, 1'000'000);
+  const Rational scaled = value * kShift;
+  return Integer(numerator(scaled) / denominator(scaled)).str() + "e-40";
+}
+
+Rational exactly(const std::string& decimal) {
+  return Rational(Integer(decimal.substr(0, decimal.find('e')))) / kShift;
+}
+
+// The bound against exact numbers, where all roundings go the same way.
+TEST_F(PointCloudFileTest, TheErrorIsBoundedWhereRoundingsAddUp) {
+  double worst_read = 0.0, worst_scaled = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    // Of (1 + k u') (1 + j u'), where u' = 2 u, the product k j u'^2 is just below u and rounded
+    // off.
+    const double k = 0x1p25 + 1e6 * i;
+    const double j = std::floor(0x1p51 / k);
+    const std::string x = just_below_the_middle(1.0 + k * 0x1p-52);
+    const std::string factor = just_below_the_middle(1.0 + j * 0x1p-52);
+    for (const bool is_scaled : {false, true}) {
+      const double scale = is_scaled ? std::stod(factor) : 1.0;
+      const PointCloudFile cloud = read("scan.txt", x + " " + x + " " + x + "\n", scale);
+      const Rational off =
+          exactly(x) * (is_scaled ? exactly(factor) : Rational(1)) - Rational(cloud.points[0].x());
+      const Rational error(cloud.point_error);
+      ASSERT_LE(Rational(3 * off * off), Rational(error * error)) << i << ' ' << is_scaled;
+      double& worst = is_scaled ? worst_scaled : worst_read;
+      worst = std::max(worst, Rational(3 * off * off / (error * error)).convert_to<double>());
+    }
+  }
+  EXPECT_GT(worst_read, 0.7);  // of a bound of 3 / 4
+  EXPECT_GT(worst_scaled, 0.7);
+}
+
+TEST_F(PointCloudFileTest, PlyInText) {
+  const PointCloudFile cloud =
+      read("a.ply",
+           "ply\r\nformat ascii 1.0\ncomment made by hand\nelement camera 1\nproperty float f\n"
+           "element vertex 2\nproperty list uchar int seen\nproperty uchar red\n"
+           "property double z\nproperty float y\nproperty float x\n"
+           "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "7\n2 5 6 255 3 2 1\n0 0 1e6 0.25 -0.5\n3 0 1 0\n");
+  EXPECT_EQ(cloud.points, kPoints);
+  EXPECT_GE(cloud.point_error, 1e6 * 0x1p-53);
+}
+
+TEST_F(PointCloudFileTest, PlyOfWholeNumbers) {
+  for (const bool big_endian : {false, true}) {
+    const auto point = [&](const std::string& type, auto x, auto y, auto z) {
+      std::string bytes = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                          "_endian 1.0\nelement vertex 1\n";
+      for (const char axis : {'x', 'y', 'z'}) bytes += "property " + type + " " + axis + "\n";
+      bytes += "end_header\n";
+      append(bytes, x, big_endian);
+      append(bytes, y, big_endian);
+      append(bytes, z, big_endian);
+      const PointCloudFile cloud = read("a.ply", bytes);
+      EXPECT_EQ(cloud.points, (std::vector{Vector3d(x, y, z)})) << type;
+      EXPECT_EQ(cloud.point_error, 0.0);
+    };
+    using I8 = std::int8_t;
+    using U8 = std::uint8_t;
+    using I16 = std::int16_t;
+    using U16 = std::uint16_t;
+    for (const char* type : {"char", "int8"}) point(type, I8{-128}, I8{127}, I8{-1});
+    for (const char* type : {"uchar", "uint8"}) point(type, U8{0}, U8{127}, U8{255});
+    for (const char* type : {"short", "int16"}) point(type, I16{-32768}, I16{258}, I16{-1});
+    for (const char* type : {"ushort", "uint16"}) point(type, U16{1}, U16{258}, U16{65535});
+    for (const char* type : {"int", "int32"}) point(type, -2147483647, 66051, -1);
+    for (const char* type : {"uint", "uint32"}) point(type, 1u, 66051u, 4294967295u);
+  }
+}
+
+TEST_F(PointCloudFileTest, PlyInBytes) {
+  for (const bool big_endian : {false, true}) {
+    std::string bytes = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                        "_endian 1.0\nelement pose 1\nproperty list uint8 short numbers\n"
+                        "element vertex 2\nproperty double x\nproperty float y\nproperty ushort i\n"
+                        "property float z\nend_header\n";
+    append(bytes, std::uint8_t{2}, big_endian);
+    append(bytes, std::int16_t{-3}, big_endian);
+    append(bytes, std::int16_t{7}, big_endian);
+    for (const Vector3d& point : kPoints) {
+      append(bytes, point.x(), big_endian);
+      append(bytes, static_cast<float>(point.y()), big_endian);
+      append(bytes, std::uint16_t{9}, big_endian);
+      append(bytes, static_cast<float>(point.z()), big_endian);
+    }
+    const PointCloudFile cloud = read("a.ply", bytes);
+    EXPECT_EQ(cloud.points, kPoints);
+    EXPECT_EQ(cloud.point_error, 0.0);
+    // However it is cut short, it is refused.
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      ASSERT_NE(fault("a.ply", bytes.substr(0, length)), "none") << length;
+    }
+  }
+}
+
+TEST_F(PointCloudFileTest, Refuses) {
+  EXPECT_EQ(fault("a.xyz", "# nothing\n"), "it has no points");
+  EXPECT_EQ(fault("a.xyz", "1 2 3\n\n1 2\n"), "line 3: has no x, y and z");
+  EXPECT_EQ(fault("a.xyz", "1 2 nan\n"), "line 1: 'nan' is not a finite number");
+  EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15 or not finite");
+  EXPECT_NE(fault("a.stl", "1 2 3\n"), "none");
+  EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "none");
+  for (const double scale : {1e-310, 2e15}) {
+    EXPECT_EQ(fault("a.xyz", "0 0 0\n", scale), "the scale is not a number from 1e-300 to 1e15");
+  }
+  EXPECT_NE(fault("a.xyz", "1 2 3\n", std::nan("")), "none");
+  EXPECT_THROW(read_point_cloud(folder_.path() / "none.ply"), Error);
+}
+
+TEST_F(PointCloudFileTest, RefusesPly) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\n";
+  const std::string axes = "property float x\nproperty float y\n";
+  const std::string lacking = "line 6: the vertices lack one of x, y and z";
+  EXPECT_EQ(fault("a.ply", head + axes + "end_header\n1 2\n"), lacking);
+  EXPECT_EQ(fault("a.ply", head + axes + "property list uchar float z\nend_header\n1 2 1 3\n"),
+            "line 7: the vertices lack one of x, y and z");
+  EXPECT_EQ(fault("a.ply", head + "end_header\n"),
+            "line 4: the element 'vertex' has no properties");
+  const std::string whole = head + axes + "property float z\nend_header\n";
+  EXPECT_EQ(fault("a.ply", whole + "1 2\n3\n"), "line 8: vertex 0 has too few numbers");
+  EXPECT_EQ(fault("a.ply", whole + "1 2 3 4\n"), "line 8: vertex 0 has too many numbers");
+  EXPECT_EQ(fault("a.ply", whole + "1 2 3\n4 5 6\n"), "line 9: more data than the header says");
+  EXPECT_EQ(fault("a.ply", whole + "1 2 x\n"), "line 8: 'x' is not a finite number");
+  const auto header_fault = [&](const std::string& line) {
+    return fault("a.ply", head + axes + line + "\nend_header\n");
+  };
+  EXPECT_EQ(header_fault("property quad x"), "line 6: 'quad' is not a type of number");
+  EXPECT_EQ(header_fault("property list quad int z"), "line 6: 'quad' is not a type of number");
+  EXPECT_EQ(header_fault("property list float int z"), "line 6: a list of fractional length");
+  EXPECT_EQ(header_fault("property int"), "line 6: a property without a name");
+  EXPECT_EQ(header_fault("property int z z"), "line 6: 'z' where the line should end");
+  EXPECT_EQ(header_fault("property int y"), "line 6: the property 'y' is there twice");
+  EXPECT_EQ(header_fault("element vertex 1"), "line 6: the element 'vertex' is there twice");
+  EXPECT_EQ(header_fault("element face -1"), "line 6: the file cannot hold -1 items of 'face'");
+  EXPECT_EQ(header_fault("element face 1.0"), "line 6: '1.0' is not a whole number");
+  EXPECT_EQ(header_fault("format ascii 2.0"), "line 6: '2.0' is not version 1.0 of the format");
+  EXPECT_EQ(header_fault("format other 1.0"), "line 6: 'other' is not a PLY format");
+  EXPECT_EQ(fault("a.ply", "ply\nproperty int x\nend_header\n"), "line 2: a property of nothing");
+  EXPECT_EQ(fault("a.ply", "ply\nelement face 0\nproperty int x\nend_header\n"),
+            "line 4: the header names no format");
+  EXPECT_EQ(fault("a.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int x\nend_header\n"),
+            "it has no vertices");
+  EXPECT_EQ(fault("a.ply", "plx\n"), "line 1: not a PLY file: it does not begin with 'ply'");
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is read from URDF files, against urdfdom.
-
 #include "base/files.h"
 #include "robot/files/urdf.h"
+#include "robot/model/kinematics.h"
+#include "tests/robot/files/kdl_robot.h"
 #include "tests/robot/files/random_urdf.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
@@ -18,7 +18,133 @@
 #include <string>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
+#include <variant>
 #include <vector>
+
+// What published robots have that URDF does not know, or that has no extent.
+
+namespace spherule::test::published_urdf {
+namespace {
+
+std::string robot_of(const std::string& in_link) {
+  return "<robot name='r'><link name='base'>" + in_link + "</link></robot>";
+}
+
+std::string joint_of(const std::string& type, const std::string& in_joint) {
+  return "<robot name='r'><link name='base'/><link name='arm'/><joint name='elbow' type='" + type +
+         "'><parent link='base'/><child link='arm'/>" + in_joint + "</joint></robot>";
+}
+
+RobotDescription read_text(const std::string& text) {
+  const TempDir folder;
+  return read_urdf(folder.write("robot.urdf", text));
+}
+
+// A point of contact and a flat box are held by what is read; what stands for no shape is not seen.
+TEST(PublishedUrdf, WidensShapesWithoutExtent) {
+  const RobotDescription robot = read_text(robot_of(R"(
+      <visual> <geometry> <box size="0 0 0"/> </geometry> </visual>
+      <visual> <geometry> <sphere radius="0.0"/> </geometry> </visual>
+      <visual> <geometry> <box size="1 0 2"/> </geometry> </visual>
+      <visual> <geometry> <sphere radius="1e-6"/> </geometry> </visual>
+      <collision> <origin xyz="1 2 3"/> <geometry> <sphere radius="0"/> </geometry> </collision>
+      <collision> <geometry> <cylinder radius="0" length="0"/> </geometry> </collision>)"));
+  const LinkDescription& link = robot.links[0];
+  ASSERT_EQ(link.visual.size(), 2U);
+  const auto solid = [](const LinkShape& shape) { return std::get<Primitive>(shape.geometry); };
+  EXPECT_EQ(std::get<Box>(solid(link.visual[0])).size, Eigen::Vector3d(1, 1e-6, 2));
+  EXPECT_EQ(std::get<SolidSphere>(solid(link.visual[1])).radius, 1e-6);
+  ASSERT_EQ(link.collision.size(), 2U);
+  EXPECT_EQ(std::get<SolidSphere>(solid(link.collision[0])).radius, 1e-6);
+  EXPECT_EQ(link.collision[0].link_from_shape.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(std::get<Cylinder>(solid(link.collision[1])).radius, 1e-6);
+  EXPECT_EQ(std::get<Cylinder>(solid(link.collision[1])).length, 1e-6);
+}
+
+// Where published robots have more than URDF knows.
+TEST(PublishedUrdf, LeavesOutWhatMeansNothing) {
+  EXPECT_EQ(
+      read_text(joint_of("continuous", "<axis rpy='0 0 0' xyz='0 1 0'/>")).model.joints()[0].axis,
+      Eigen::Vector3d::UnitY());
+  EXPECT_EQ(read_text(joint_of("fixed", "<axis xzy='0 0 1'/>")).model.joints().size(), 1U);
+  const RobotDescription robot = read_text(robot_of(
+      "<collision><geometry><sphere radius='1'/><drake:declare_convex/></geometry></collision>"
+      "<visual><geometry><sphere radius='2'/><material name='grey'/></geometry></visual>"));
+  EXPECT_EQ(robot.links[0].collision.size(), 1U);
+  EXPECT_EQ(robot.links[0].visual.size(), 1U);
+}
+
+}  // namespace
+}  // namespace spherule::test::published_urdf
+
+// The kinematics of robots that were read from files, against KDL.
+
+namespace spherule::test {
+namespace {
+
+std::string name_of_variable(const RobotModel& robot, int variable) {
+  const int joint = robot.variable_joints()[static_cast<std::size_t>(variable)];
+  return robot.joints()[static_cast<std::size_t>(joint)].name;
+}
+
+void compare_with_kdl(const std::filesystem::path& urdf, Random& random, int configurations) {
+  const RobotDescription robot = read_urdf(urdf);
+  const KdlRobot kdl(urdf);
+  ASSERT_EQ(robot.model.links().size(), kdl.links().size());
+  ASSERT_EQ(static_cast<std::size_t>(robot.model.variable_count()), kdl.variables().size());
+  for (int i = 0; i < configurations; ++i) {
+    std::vector<double> configuration;
+    std::map<std::string, double> by_name;
+    for (int k = 0; k < robot.model.variable_count(); ++k) {
+      configuration.push_back(i == 0 ? 0.0 : random.between(-3.0, 3.0));
+      by_name[name_of_variable(robot.model, k)] = configuration.back();
+    }
+    std::vector<Pose> poses;
+    forward_kinematics(robot.model, configuration, poses);
+    const auto expected = kdl.poses(by_name);
+    for (std::size_t link = 0; link < poses.size(); ++link) {
+      const Eigen::Isometry3d& pose = expected.at(robot.model.links()[link].name);
+      const double size = 1.0 + pose.translation().norm();
+      ASSERT_LE((poses[link].matrix() - pose.linear()).cwiseAbs().maxCoeff(), 1e-11);
+      ASSERT_LE((poses[link].translation() - pose.translation()).norm(), 1e-11 * size)
+          << robot.model.links()[link].name;
+    }
+  }
+}
+
+TEST(UrdfKinematics, AgreesWithKdlOnRandomRobots) {
+  Random random(61);
+  const TempDir folder;
+  for (int i = 0; i < effort(200, 20); ++i) {
+    const std::string urdf = random_urdf(random, static_cast<int>(random.index(15)));
+    SCOPED_TRACE(urdf);
+    compare_with_kdl(folder.write("robot_" + std::to_string(i) + ".urdf", urdf), random, 5);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(UrdfKinematics, AgreesWithKdlOnRealRobots) {
+  const auto models = models_dir();
+  if (!models) GTEST_SKIP() << "SPHERULE_MODELS names no folder";
+  Random random(62);
+  std::set<std::string> read;
+  for (const auto& robot : std::filesystem::directory_iterator(*models / "robots")) {
+    for (const auto& file : std::filesystem::directory_iterator(robot)) {
+      if (file.path().extension() != ".urdf") continue;
+      SCOPED_TRACE(file.path());
+      compare_with_kdl(file.path(), random, 50);
+      read.insert(file.path().stem());
+    }
+  }
+  for (const char* name : {"irb4400l_30_243", "fr3_collision", "franka_panda", "panda_collision"}) {
+    EXPECT_TRUE(read.contains(name)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace spherule::test
+
+// What is read from URDF files, against urdfdom.
 
 namespace spherule::test::urdf_oracle_test {
 namespace {
