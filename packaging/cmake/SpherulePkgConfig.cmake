@@ -6,8 +6,7 @@
 # an older C++, which would take the place of ours. All others are linked by the names of their files.
 set(SPHERULE_PKGCONFIG_NAMES
     "Eigen3::Eigen=eigen3" "TBB::tbb=tbb"
-    "ZLIB::ZLIB=zlib" "tinyxml2::tinyxml2=tinyxml2" "yaml-cpp=yaml-cpp"
-    "Qhull::qhull_r=qhull_r")
+    "ZLIB::ZLIB=zlib" "tinyxml2::tinyxml2=tinyxml2" "yaml-cpp=yaml-cpp")
 
 # Adds what linking ITEM takes to `requires`, `cflags` and `libs` of the caller.
 function(spherule_pkgconfig_item item)
