@@ -5,6 +5,7 @@
 #include "cli/options/robot_options.h"
 #include "cli/robots/pair_report.h"
 #include "cli/text/print.h"
+#include "simplifier/option_record.h"
 
 #include <algorithm>
 #include <cmath>

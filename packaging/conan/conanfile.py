@@ -10,7 +10,7 @@ from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, load
 
 LEFT_OUT = ("CAD", "FCL", "OMPL", "CLI", "PYTHON", "TESTS")
-FOLDERS = ("spheretree", "mesh", "simplifier", "collide", "robot", "docs", "examples")
+FOLDERS = ("base", "packaging", "geometry", "io", "spheretree", "simplifier", "collide", "robot", "docs", "examples")
 
 
 class Spherule(ConanFile):
