@@ -15,7 +15,7 @@
 namespace spherule {
 namespace {
 
-// What is completed is chosen by the command, "baseline hull" say, and the option before the word.
+// What is completed is chosen by the command and the option before the word.
 constexpr const char* kStart =
     R"(# Completion of spherule for bash, made by `spherule completion bash`.
 _spherule() {
@@ -148,7 +148,7 @@ std::string fish_value(const OptionSpecification& option) {
   return " -f -a " + fish_quoted(option.is_list ? "(__fish_append , " + words + ")" : words);
 }
 
-// The paths of all commands below one: 'baseline', 'baseline hull'.
+// The paths of all commands below one.
 std::string fish_paths(const CommandSpecification& command, const std::string& path) {
   std::string text;
   for (const CommandSpecification& one : command.commands) {

@@ -68,7 +68,7 @@ void repeat(const std::string& option, std::optional<double> value,
 inline constexpr double kMillimetresPerMetre = 1000.0;
 
 // Exit codes of every command. What "no" means stands with each command: what is not
-// proved (fit, baseline), a leak (audit, audit-robot), a collision (collide, check).
+// proved (fit, robot), a leak (audit, audit-robot), a collision (collide, check).
 inline constexpr int kYes = 0;
 inline constexpr int kNo = 1;
 inline constexpr int kBadInput = 2;

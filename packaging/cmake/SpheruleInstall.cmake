@@ -43,11 +43,11 @@ endif()
 install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/spherule)
 
 # The pages that helps and messages name, with what their links lead to.
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "__pycache__" EXCLUDE)
-foreach(folder IN ITEMS adapters bench cli collide mesh packaging python robot simplifier spheretree tests)
+foreach(folder IN ITEMS adapters base bench cli collide geometry io packaging python robot simplifier spheretree tests)
   file(GLOB_RECURSE readmes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${folder}/*README.md)
   foreach(readme IN LISTS readmes)
     get_filename_component(place ${readme} DIRECTORY)

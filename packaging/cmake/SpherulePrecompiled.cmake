@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Headers of others that most sources include, compiled once (option SPHERULE_PRECOMPILE). That hides a
-# missing include; the release build of CI, which compiles sources as users do, finds it. GCC lets sources
+# missing include; the release build of CI, which compiles the libraries as users do, finds it there. GCC lets sources
 # share such a header only where they have the same code model and the same macros that it looks at,
 # hence one for each KIND: library, program, test. What defines objects in each source stays out (CLI11).
 
