@@ -459,7 +459,7 @@ class ColladaReader {
   }
 
   static std::string axis_of(const ColladaDocument& document, const Element* axis) {
-    if (axis == nullptr) return "Y_UP";
+    if (axis == nullptr) return "Y_UP ";  // as words are joined below
     std::string words;
     const std::string text = document.text(*axis);
     for (const std::string_view word : words_of(text)) words.append(word).append(" ");

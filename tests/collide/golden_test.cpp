@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // G7: verdicts and pair lists are the same on every machine, as a hash of them. Half of the spheres
 // are in contact up to rounding, where the last bit of the canonical test decides.
+#include "collide/collide.h"
 #include "collide/meshes/mesh_tree.h"
 #include "spheretree/build.h"
 #include "tests/support/hash.h"

@@ -2,6 +2,7 @@
 #include "collide/meshes/mesh_search.h"
 
 #include "base/error.h"
+#include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"
 #include "collide/meshes/mesh_tree.h"
 #include "collide/meshes/packed_mesh.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two triangles in one frame, against rational numbers.
 #include "base/rounding.h"
+#include "collide/search/relative_pose.h"
 #include "geometry/triangles.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"

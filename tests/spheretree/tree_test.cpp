@@ -33,13 +33,6 @@ int largest_depth(std::size_t count) {
   return 2 * log2 + 8 + 1 + log2;
 }
 
-bool same_tree(const SphereTree& a, const SphereTree& b) {
-  const SphereTreeData& p = a.data();
-  const SphereTreeData& q = b.data();
-  return p.x == q.x && p.y == q.y && p.z == q.z && p.radius == q.radius &&
-         p.first_child == q.first_child && p.child_count == q.child_count && p.spheres == q.spheres;
-}
-
 void expect_good(const SphereTree& tree, std::span<const Sphere> spheres, int branching) {
   EXPECT_EQ(fault_of(tree.data()), "");
   ASSERT_EQ(tree.spheres().size(), spheres.size());
