@@ -6,6 +6,9 @@
 #include "collide/collide.h"
 #include "spheretree/build.h"
 #include "tests/support/effort.h"
+#include "tests/support/exact/poses.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 

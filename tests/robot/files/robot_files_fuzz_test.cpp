@@ -40,7 +40,7 @@ constexpr std::string_view kPieces[] = {"<",          ">",
                                         "-",          "1",
                                         ".",          "<mimic joint='"};
 
-std::string mutated(std::string text, Random& random) {
+std::string mutated_urdf(std::string text, Random& random) {
   for (std::size_t n = 1 + random.index(2); n > 0 && !text.empty(); --n) {
     const std::size_t at = random.index(text.size());
     const std::size_t length = std::min(text.size() - at, 1 + random.index(30));
@@ -99,7 +99,7 @@ TEST(RobotFilesFuzz, UrdfIsReadOrRefused) {
   int refused = 0;
   for (int i = 0; i < effort(1500, 200); ++i) {
     const std::string text =
-        mutated(random_urdf(random, 1 + static_cast<int>(random.index(4))), random);
+        mutated_urdf(random_urdf(random, 1 + static_cast<int>(random.index(4))), random);
     const std::filesystem::path file = write_anew(folder, "robot.urdf", text);
     SCOPED_TRACE(text);
     try {
@@ -128,7 +128,7 @@ TEST(RobotFilesFuzz, SrdfIsReadOrRefused) {
   int read = 0;
   int refused = 0;
   for (int i = 0; i < effort(1500, 200); ++i) {
-    const std::string text = mutated(valid, random);
+    const std::string text = mutated_urdf(valid, random);
     const std::filesystem::path file = write_anew(folder, "robot.srdf", text);
     SCOPED_TRACE(text);
     try {
