@@ -120,8 +120,11 @@ class YamlWriter {
   void put_ignored(const std::string& key, const RobotSpheres& spheres) {
     std::vector<std::string> order;
     for (const LinkSpheres& link : spheres.links) order.push_back(link.link);
-    open(key);
-    for (const IgnoredLinks& list : ignored_links(spheres.self_collision_ignore, order)) {
+    const std::vector<IgnoredLinks> lists = ignored_links(spheres.self_collision_ignore, order);
+    put_key(key);
+    put_style(lists.empty());
+    open();
+    for (const IgnoredLinks& list : lists) {
       put(list.first, list.others);
       const std::string reasons = reasons_of(list);
       if (!has_unicode_break(reasons)) out_ << YAML::Comment(reasons);
@@ -149,10 +152,15 @@ class YamlWriter {
     put_value(key);
     out_ << YAML::Value;
   }
+  // Of the map or list that begins next. Empty ones stand in the line of their key.
+  void put_style(bool is_flow) { out_ << (is_flow ? YAML::Flow : YAML::Block); }
+  void put_quoted(const std::string& text) {
+    if (has_unicode_break(text)) out_ << YAML::EscapeNonAscii;
+    out_ << YAML::DoubleQuoted << text;
+  }
   // A text that is one to every reader.
   void put_value(const std::string& text) {
-    if (has_unicode_break(text)) out_ << YAML::EscapeNonAscii;
-    if (!is_plain_yaml(text)) out_ << YAML::DoubleQuoted;
+    if (!is_plain_yaml(text)) return put_quoted(text);
     out_ << text;
   }
   void put_value(double number) { out_ << decimal(number); }
@@ -163,6 +171,7 @@ class YamlWriter {
     out_ << YAML::EndSeq;
   }
   void put_value(const std::map<std::string, double>& lengths) {
+    put_style(lengths.empty());
     out_ << YAML::BeginMap;
     for (const auto& [link, length] : lengths) put(link, length);
     out_ << YAML::EndMap;
@@ -175,9 +184,11 @@ class YamlWriter {
     out_ << YAML::EndMap;
   }
   void put_value(const std::vector<LinkSpheres>& links) {
+    put_style(links.empty());
     out_ << YAML::BeginMap;
     for (const LinkSpheres& link : links) {
       put_key(link.link);
+      put_style(link.spheres.empty());
       out_ << YAML::BeginSeq;
       for (const Sphere& sphere : link.spheres) put_value(sphere);
       out_ << YAML::EndSeq;
@@ -195,7 +206,8 @@ class YamlWriter {
     const bool has_type = !node.Tag().empty() && node.Tag() != "?" && node.Tag() != "!";
     if (has_type) out_ << YAML::VerbatimTag(node.Tag());
     if (node.IsMap()) {
-      out_ << (is_flow ? YAML::Flow : YAML::Block) << YAML::BeginMap;
+      put_style(is_flow);
+      out_ << YAML::BeginMap;
       for (const auto& member : node) {
         out_ << YAML::Key;
         put_tree(member.first, place, links);
@@ -204,13 +216,14 @@ class YamlWriter {
       }
       out_ << YAML::EndMap;
     } else if (node.IsSequence()) {
-      out_ << (is_flow ? YAML::Flow : YAML::Block) << YAML::BeginSeq;
+      put_style(is_flow);
+      out_ << YAML::BeginSeq;
       for (const auto& item : node) put_tree(item, place, links);
       out_ << YAML::EndSeq;
     } else if (node.Tag() == "?") {
       out_ << node.Scalar();  // a number or a truth value is not put in quotes
     } else if (node.Tag() == "!") {
-      out_ << YAML::DoubleQuoted << node.Scalar();
+      put_quoted(node.Scalar());
     } else {
       put_value(node.Scalar());
     }
@@ -231,7 +244,9 @@ std::vector<double> positions(const SphereFileContext& context) {
 class Unshared {
  public:
   explicit Unshared(const SphereGatherer& gathered, std::size_t text_length)
-      : gathered_(gathered), nodes_left_((1U << 18) + 8 * text_length) {}
+      : gathered_(gathered),
+        nodes_left_((1U << 18) + 8 * text_length),
+        bytes_left_((1U << 22) + 8 * text_length) {}
 
   Node copy(const Node& node) {
     take(node, 0);
@@ -241,11 +256,14 @@ class Unshared {
  private:
   static constexpr int kDeepest = 64;  // an anchor may hold itself
 
-  // An anchor may hold another twice that does the same, and so on.
+  // An anchor may hold another twice that does the same, and so on. Without aliases a text makes
+  // neither more nodes than it has bytes nor eight times as many bytes, of tags that are written
+  // out.
   void take(const Node& node, int depth) {
     const std::size_t bytes = (node.IsScalar() ? node.Scalar().size() : 0) + node.Tag().size();
-    gathered_.unless(depth <= kDeepest && nodes_left_ > 0 && bytes <= bytes_left_, place_of(node),
-                     "is too deep, or too long with its aliases");
+    if (depth > kDeepest || nodes_left_ == 0 || bytes > bytes_left_) {
+      gathered_.refuse(place_of(node), "is too deep, or too long with its aliases");
+    }
     --nodes_left_;
     bytes_left_ -= bytes;
     for (const auto& item : node) {
@@ -271,7 +289,7 @@ class Unshared {
 
   const SphereGatherer& gathered_;
   std::size_t nodes_left_;
-  std::size_t bytes_left_ = 1U << 28;
+  std::size_t bytes_left_;
 };
 
 // Where things stand, by the keys from the root on; empty where a file has no place for them.

@@ -231,7 +231,6 @@ TEST(MeshContactTruth, OnShapes) {
 
 TEST(MeshContactTruth, OnRealModels) {
   if (!models_dir()) GTEST_SKIP() << "SPHERULE_MODELS is not set";
-  const std::string kArm = "robots/abb_irb4400l/meshes/irb4400l_30_243/";
   const FittedModel& pipes = real_model("parts/three_pipes.stl", 1);
   const FittedModel& gear = real_model("parts/spur_gear_m2_z24.stl", 1);
   expect_exact(real_model(kArm + "visual/link_4.stl", 1000), pipes, 21);

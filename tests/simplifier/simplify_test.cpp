@@ -5,6 +5,7 @@
 
 #include "simplifier/bodies.h"
 #include "simplifier/internal/stages.h"
+#include "simplifier/option_record.h"
 #include "simplifier/repair.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"

@@ -2,6 +2,7 @@
 // Covers with zones of their own E: the spheres keep both errors, the certificate knows it, and the
 // tool that made D does not notice the simplification.
 #include "geometry/mesh_distance.h"
+#include "simplifier/option_record.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"

@@ -8,6 +8,7 @@
 #include "tests/soak/random_scene.h"
 #include "tests/soak/robot_scenes.h"
 #include "tests/soak/scale.h"
+#include "tests/support/shapes.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>
