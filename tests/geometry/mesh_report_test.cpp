@@ -205,7 +205,8 @@ TEST(Validate, NamesSubjectAndFault) {
     EXPECT_NO_THROW(validate(entry.mesh, "zoo")) << entry.name;
   }
   EXPECT_EQ(error([](TriangleMesh& mesh) { mesh.vertices[1].y() = 1e15; }), "");
-  EXPECT_EQ(error([](TriangleMesh& mesh) { mesh.triangles.clear(); }), "part: there are no triangles");
+  EXPECT_EQ(error([](TriangleMesh& mesh) { mesh.triangles.clear(); }),
+            "part: there are no triangles");
   for (const double bad : {std::nan(""), HUGE_VAL, 1.1e15, -1.1e15}) {
     const std::string text = error([&](TriangleMesh& mesh) { mesh.vertices[5].y() = bad; });
     EXPECT_TRUE(text.starts_with("part: vertex 5 has a coordinate ")) << text;

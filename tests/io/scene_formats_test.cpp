@@ -449,9 +449,8 @@ TEST_F(SceneLimits, ThreeMfElements) {
   const auto with_metadata = [&](const std::string& text) {
     return threemf_bytes(replaced(good, "<build>", text + "<build>"));
   };
-  EXPECT_EQ(
-      read("3mf", with_metadata(repeated("<m>", 50) + repeated("</m>", 50))).triangles.size(),
-      12u);
+  EXPECT_EQ(read("3mf", with_metadata(repeated("<m>", 50) + repeated("</m>", 50))).triangles.size(),
+            12u);
   EXPECT_TRUE(refused("3mf", with_metadata(repeated("<m>", 100000)), "nested too deep"));
 }
 
