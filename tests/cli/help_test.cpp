@@ -206,8 +206,8 @@ TEST_F(CompletionTest, BashCompletesValuesAndFiles) {
     Words offers;
   };
   std::vector<Case> cases = {{"", "fi", "fit"},
-                             {"fit part.stl --method", "", "cover medial packing paper"},
-                             {"fit part.stl --method", "=", "cover medial packing paper"},
+                             {"fit part.stl --method", "", "cover paper"},
+                             {"fit part.stl --method", "=", "cover paper"},
                              {"fit --method =", "pap", "paper"},
                              {"fit", "pa", "part.stl parts"},
                              {"fit", "pap", "paper.txt"},  // no mesh begins like that
@@ -237,7 +237,7 @@ TEST_F(CompletionTest, FishCompletes) {
   const std::vector<std::pair<std::string, Words>> cases = {
       {"fi", "fit"},
       {"fit --meth", "--method"},
-      {"fit --method ", "cover medial packing paper"},
+      {"fit --method ", "cover paper"},
       {"fit --zones pa", "paper.txt part.stl parts/"},
       {"fit pa", "part.stl parts/"},
       {"fit pap", "paper.txt"},
