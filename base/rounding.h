@@ -23,7 +23,7 @@
 // differences lose 2^-1022 each, a radicand of at least 2^-920 loses 3 * 2^-1022. Sums and
 // differences (add_up and so on) are exact before they are rounded unless they are subnormal.
 //
-// Fast-math: a source that is compiled with it is refused by an #error below, since there a
+// Fast-math: the preprocessor refuses a source that is compiled with it (below), since there a
 // compiler takes NaN for impossible and changes the order of operations.
 //
 // @code{.cpp}
