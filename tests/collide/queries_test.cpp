@@ -335,8 +335,8 @@ TYPED_TEST(Queries, KeepAClearance) {
       ++counts[hit];
     }
   }
-  EXPECT_GT(counts[0], effort(60, 5));
-  EXPECT_GT(counts[1], effort(60, 5));
+  EXPECT_GT(counts[0], effort(30, 3));
+  EXPECT_GT(counts[1], effort(30, 3));
   for (const double bad : {std::nan(""), HUGE_VAL, -1e-300, 2e15}) {
     EXPECT_THROW((void)this->scene(random).within(bad), Error);
   }
@@ -351,7 +351,7 @@ TYPED_TEST(Queries, BoundTheDistance) {
     const DistanceResult result = scene.distance();
     ASSERT_LE(result.lower, exact) << i;
     ASSERT_GE(result.upper, exact) << i;
-    ASSERT_LE(result.upper - result.lower, 2.0 * scene.slack() + 1e-14 * result.upper + scene.loss);
+    ASSERT_LE(result.upper - result.lower, 2.5 * scene.slack() + 1e-14 * result.upper + scene.loss);
     ASSERT_TRUE(!scene.collides() || result.lower == 0.0);
     for (const DistanceRequest& request :
          {DistanceRequest{.tolerance = 0.3 * result.upper},
@@ -383,9 +383,11 @@ TYPED_TEST(Queries, FindTheDeepestContact) {
     ASSERT_GE(contact->overlap_depth, depth - 4.0 * scene.slack() - scene.loss) << i;
     // The point is in both.
     const Sphere point{contact->world_point, 0.0};
-    const double error = 1e-14 * (scene.world_from_shape.translation().template lpNorm<1>() +
-                                  scene.world_from_tree.translation().template lpNorm<1>()) +
-                         10.0 * scene.slack() + scene.loss;
+    double error = 1e-14 * (scene.world_from_shape.translation().template lpNorm<1>() +
+                            scene.world_from_tree.translation().template lpNorm<1>()) +
+                   10.0 * scene.slack() + scene.loss;
+    // The nearest point of a triangle is known to a millionth of its distance.
+    if (std::is_same_v<TypeParam, SolidMesh>) error += 1e-6 * scene.tree.root().radius;
     ASSERT_LE(gap_of(point, Pose(), scene.shape, scene.world_from_shape), error) << i;
     ASSERT_LE(gap_of(point, Pose(), scene.tree, scene.world_from_tree), error) << i;
   }
