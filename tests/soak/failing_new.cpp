@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loaded before the libraries of a program (LD_PRELOAD), it lets the allocation by operator new of
-// the number in SPHERULE_FAILING_ALLOCATION fail. Allocations are counted on all threads from where
-// the program sets a new handler, which the command does first.
+// the number in SPHERULE_FAILING_ALLOCATION fail. Allocations are counted on all threads.
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +13,7 @@ void* operator new(std::size_t size) {
     const char* const text = std::getenv("SPHERULE_FAILING_ALLOCATION");
     return text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
   }();
-  const std::new_handler handler = std::get_new_handler();
-  if (handler != nullptr && ++allocations == failing) {
-    handler();
-    throw std::bad_alloc();
-  }
+  if (++allocations == failing) throw std::bad_alloc();
   if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
