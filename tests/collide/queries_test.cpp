@@ -352,7 +352,7 @@ TYPED_TEST(Queries, BoundTheDistance) {
     const DistanceResult result = scene.distance();
     ASSERT_LE(result.lower, exact) << i;
     ASSERT_GE(result.upper, exact) << i;
-    ASSERT_LE(result.upper - result.lower, 2.5 * scene.slack() + 1e-14 * result.upper + scene.loss);
+    ASSERT_LE(result.upper - result.lower, 3.0 * scene.slack() + 1e-14 * result.upper + scene.loss);
     ASSERT_TRUE(!scene.collides() || result.lower == 0.0);
     for (const DistanceRequest& request :
          {DistanceRequest{.tolerance = 0.3 * result.upper},
@@ -387,8 +387,11 @@ TYPED_TEST(Queries, FindTheDeepestContact) {
     double error = 1e-14 * (scene.world_from_shape.translation().template lpNorm<1>() +
                             scene.world_from_tree.translation().template lpNorm<1>()) +
                    10.0 * scene.slack() + scene.loss;
-    // The nearest point of a triangle is known to a millionth of its distance.
-    if (std::is_same_v<TypeParam, SolidMesh>) error += 1e-6 * scene.tree.root().radius;
+    // The nearest point of a triangle is known to a millionth of its distance, and the point may
+    // be on the surface before the solid is inflated.
+    if constexpr (std::is_same_v<TypeParam, SolidMesh>) {
+      error += 1e-6 * scene.tree.root().radius + (1.0 + 1e-6) * scene.shape.inflation();
+    }
     ASSERT_LE(gap_of(point, Pose(), scene.shape, scene.world_from_shape), error) << i;
     ASSERT_LE(gap_of(point, Pose(), scene.tree, scene.world_from_tree), error) << i;
   }
