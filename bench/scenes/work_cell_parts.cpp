@@ -176,7 +176,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kTriangles = 1942;
+constexpr std::size_t kWorkpieceTriangles = 1942;
 constexpr int kSides = 64;  // a multiple of 4: the top and the bottom of the joint are corners
 constexpr int kPipes = 3;
 // Rings of one pipe, as shares of the way from the seam to the end.
@@ -300,7 +300,7 @@ TriangleMesh make_workpiece() {
     }
   }
   snap(joint.mesh);
-  refine_to(joint.mesh, kTriangles);
+  refine_to(joint.mesh, kWorkpieceTriangles);
   snap(joint.mesh);
   return std::move(joint.mesh);
 }
