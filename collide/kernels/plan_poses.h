@@ -5,7 +5,7 @@
 // kernels, see plan_kernel_impl.h.
 //
 // Error budget of poses, v being the unit roundoff (2^-24 or 2^-53). A pair of sine and cosine errs
-// by less than 6 v in single precision, by less than 2e-11 in double (kernel_angles.h).
+// by less than 6 v in single precision, by less than 2e-11 in double (kernel_vectors.h).
 // Of a frame in its parent's, over all nine entries of a rotation (Frobenius), besides the sines:
 //   the frame's rotation rounded           2 v
 //   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
@@ -179,7 +179,7 @@ SPHERULE_INLINE Point<Real> velocity_of(const PlanTwist<Real>& twist, const Poin
 }  // namespace
 }  // namespace spherule::internal::SPHERULE_KERNEL
 
-// Whether positions lie in free cells of a pair (free_cells.h). Part of the kernels, see
+// Whether positions lie in free cells of a pair (plan_trees.h). Part of the kernels, see
 // plan_kernel_impl.h.
 //
 // Coordinates are computed in double: those of positions up to 100 err by less than 1e-13 of a

@@ -32,7 +32,7 @@ struct SearchTrees {
   CullingSpheres wide_spheres;
 };
 
-// Keeps the search trees of sphere trees, and of spheres around solid meshes (solid_spheres.h), for
+// Keeps the search trees of sphere trees, and of spheres around solid meshes (spheres_inside.h), for
 // as long as these live and are not assigned to. Threads may share it.
 class SearchTreeCache {
  public:

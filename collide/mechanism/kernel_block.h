@@ -2,7 +2,7 @@
 #pragma once
 
 // A block of up to sixteen configurations, one in each lane. Part of the kernels, see
-// mechanism_kernel_impl.h.
+// kernel_block.h.
 //
 // Neighbours on a path differ little. One search for the configuration in the middle, with the
 // body grown by how far it is from there in any other, finds the few pairs of leaves that may touch

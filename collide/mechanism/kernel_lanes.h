@@ -2,7 +2,7 @@
 #pragma once
 
 // Kinematics of one configuration in double precision. Part of the kernels, see
-// mechanism_kernel_impl.h.
+// kernel_block.h.
 
 #include "collide/mechanism/kernel_search.h"
 #include "collide/mechanism/kernel_vectors.h"
@@ -145,9 +145,9 @@ SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScrat
 }  // namespace spherule::internal::SPHERULE_KERNEL
 
 // Sixteen configurations side by side, in as many vectors of the machine as that takes: numbers,
-// and the kinematics in single precision. Part of the kernels, see mechanism_kernel_impl.h.
+// and the kinematics in single precision. Part of the kernels, see kernel_block.h.
 //
-// Error budget, v = 2^-24. A pair of sine and cosine errs by less than 6 v (kernel_angles.h).
+// Error budget, v = 2^-24. A pair of sine and cosine errs by less than 6 v (kernel_vectors.h).
 // Of a frame in its parent's, over all nine entries of a rotation (Frobenius):
 //   the frame's rotation rounded           2 v
 //   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries

@@ -118,7 +118,7 @@ class MechanismCheck {
   // The largest magnitude of a variable, in radians or the unit of the trees, for which collides()
   // may be called: all budgets of errors, those of the robot's motions too, are proved up to it.
   // Beyond what joints of robots do (16 turns, 100 metres), and so small that a position less its
-  // whole turns is known to 2e-14 (kernel_angles.h).
+  // whole turns is known to 2e-14 (kernel_vectors.h).
   static constexpr double kLargestVariable = 100.0;
   // Whether all variables are finite and none is larger than that in magnitude.
   static bool is_in_range(std::span<const double> variables);

@@ -192,7 +192,7 @@ const Kernels& avx512_kernels();
 // MechanismCheck::kLargestVariable, whose header the kernels do not include: what is inline there
 // would be compiled for their instruction sets. mechanism_check.cpp has them equal.
 inline constexpr double kLargestKernelVariable = 100.0;
-// Of a sine and its cosine together, see kernel_angles.h.
+// Of a sine and its cosine together, see kernel_vectors.h.
 inline constexpr double kSineError = 2e-11;
 // For each frame between root and body, of the largest distance from the root: how far a point may
 // be off where poses are computed in lanes, see kernel_lanes.h.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The kernels of mesh_kernel.h, compiled once for each instruction set; what
-// mechanism_kernel_impl.h says of those holds here, too. The including file defines
+// The kernels of packed_mesh.h, compiled once for each instruction set; what
+// kernel_block.h says of those holds here, too. The including file defines
 // SPHERULE_KERNEL.
 //
 // Error budget, v = 2^-24. Let S bound the coordinates and the distance to the origin of every
