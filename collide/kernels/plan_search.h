@@ -99,11 +99,11 @@ struct HalfSpaceShape {
 // offset of p from the nearest point of K, |e| = f, and v the velocity of p against K, all at the
 // middle. Distance to a convex set is convex and has the gradient e / f, so that in the whole part
 //     f >= f(middle) - |e . v| h / f - bend h^2   and   f >= f(middle) - speed h,
-// with the bounds of plan_vectors.h: `speed` of that velocity, `bend` of half its change. The sphere
-// is apart in the whole part as long as one of these exceeds the radius R; so is what it encloses:
-// the nodes of a tree speak for their leaves. For two bodies K is a point, and the velocity is that
-// of the offset of their centres, as seen from a link in whose directions e is fixed: what that
-// link turns with adds a vector at right angles to e.
+// with the bounds of plan_vectors.h: `speed` of that velocity, `bend` of half its change. The
+// sphere is apart in the whole part as long as one of these exceeds the radius R; so is what it
+// encloses: the nodes of a tree speak for their leaves. For two bodies K is a point, and the
+// velocity is that of the offset of their centres, as seen from a link in whose directions e is
+// fixed: what that link turns with adds a vector at right angles to e.
 //
 // Rounding. Let |e' - e| <= p for the computed offset e', d = |e'|. Then f >= d - p and |e . v| <=
 // |e' . v| + p speed. A test that finds
