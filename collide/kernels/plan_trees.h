@@ -32,8 +32,8 @@ struct SearchTrees {
   CullingSpheres wide_spheres;
 };
 
-// Keeps the search trees of sphere trees, and of spheres around solid meshes (spheres_inside.h), for
-// as long as these live and are not assigned to. Threads may share it.
+// Keeps the search trees of sphere trees, and of spheres around solid meshes (spheres_inside.h),
+// for as long as these live and are not assigned to. Threads may share it.
 class SearchTreeCache {
  public:
   std::shared_ptr<const SearchTrees> of(const std::shared_ptr<const SphereTree>& tree);
