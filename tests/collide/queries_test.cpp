@@ -317,7 +317,7 @@ TYPED_TEST(Queries, NeitherMissNorInventAContact) {
   }
   EXPECT_GT(touching, effort(200, 20));
   EXPECT_GT(slack_needed, effort(15, 1));
-  EXPECT_GT(free, effort(100, 10));
+  EXPECT_GT(free, effort(100, 5));
 }
 
 TYPED_TEST(Queries, KeepAClearance) {
