@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # For scripts to source: the Debian packages that parts of the project need (functions that add to
-# `packages`), and the generator and compiler cache of their builds.
+# `packages`), and the generator of their builds.
 
 packages=()
 
@@ -74,13 +74,7 @@ need_benchmarks() {
     libqhull-dev)
 }
 
-# Selects Ninja and ccache for CMake, if they are installed. CMake reads both variables only when a build
-# folder is made.
-use_ninja_and_ccache() {
+# Selects Ninja for CMake, if it is installed; CMake reads the variable only when a build folder is made.
+use_ninja() {
   if command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
-  if command -v ccache >/dev/null; then
-    export CMAKE_CXX_COMPILER_LAUNCHER=ccache
-    # Without these it stores nothing of a build with precompiled headers.
-    export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:+$CCACHE_SLOPPINESS,}pch_defines,time_macros
-  fi
 }
