@@ -37,7 +37,6 @@ class BuildByCMake(build_ext):
             "-DCMAKE_BUILD_TYPE=Release",
             f"-DPython_EXECUTABLE={sys.executable}",
             "-DSPHERULE_PYTHON=ON",
-            "-DSPHERULE_PRECOMPILE=ALL",
             *shlex.split(os.environ.get("CMAKE_ARGS", "")),
         ]
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))

@@ -163,11 +163,11 @@ std::optional<std::filesystem::path> file_below(const std::filesystem::path& fol
 
 GltfDocument::GltfDocument(std::string_view bytes, const std::string& subject) : subject_(subject) {
   split_container(bytes);
-  document_.emplace(parse_json<Json>(json_, [&](const std::string& reason) {
+  root_ = parse_json<Json>(json_, [&](const std::string& reason) {
     fail((json_.size() < bytes.size() ? "in its JSON: " : "") + reason);
-  }));
-  if (!root().is_object()) fail("not a glTF file");
-  const Json* const asset = member(root(), "asset");
+  });
+  if (!root_.is_object()) fail("not a glTF file");
+  const Json* const asset = member(root_, "asset");
   if (asset == nullptr || !text(*asset, "version").starts_with("2.")) fail("not glTF of version 2");
   // Later versions 2.x can be read as 2.0 unless the file says otherwise.
   if (asset->contains("minVersion") && text(*asset, "minVersion") != "2.0") {

@@ -30,7 +30,7 @@ class GltfDocument {
   // kDeepestJson or requires an extension that may change where its meshes are.
   GltfDocument(std::string_view bytes, const std::string& subject);
 
-  const Json& root() const { return document_->root(); }
+  const Json& root() const { return root_; }
   // The binary chunk of a GLB file.
   std::optional<std::string_view> binary_chunk() const { return binary_chunk_; }
   // Whether the file requires KHR_mesh_quantization: positions may be whole numbers.
@@ -60,7 +60,7 @@ class GltfDocument {
   const std::string& subject_;
   std::string_view json_;
   std::optional<std::string_view> binary_chunk_;
-  std::optional<JsonDocument<Json>> document_;
+  Json root_;
   bool is_quantized_ = false;
 };
 

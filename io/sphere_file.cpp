@@ -322,8 +322,7 @@ std::string internal::encode_spheres(const SphereFile& file, const std::string& 
 
 SphereFile internal::decode_spheres(std::string_view text, const std::string& name) {
   const Refusal refuse(name);
-  const internal::JsonDocument<json> parsed = internal::parse_json<json>(text, refuse);
-  const json& document = parsed.root();
+  const json document = internal::parse_json<json>(text, refuse);
   refuse.unless(document.is_object(), "is not an object");
   const auto format = document.find("format");
   refuse.unless(format != document.end() && *format == kFormat,

@@ -100,8 +100,8 @@ void print_model(const std::string& file) {
 
 bool is_interrupted_report(const std::string& file) {
   const auto refuse = [&](const std::string& reason) { throw Error(file, reason); };
-  const auto report = internal::parse_json<Json>(read_file(file), refuse);
-  return report.root().is_object() && report.root().value("interrupted", Json()) == true;
+  const Json report = internal::parse_json<Json>(read_file(file), refuse);
+  return report.is_object() && report.value("interrupted", Json()) == true;
 }
 
 int info(const std::string& file) {

@@ -222,7 +222,7 @@ bool is_robot_file(const std::string& file) {
   const std::string ending = lower_ending(file);
   if (ending == ".json") {
     const auto document = json_in(file);
-    const Json& json = document.root();
+    const Json& json = document;
     if (is_by_links(json)) return true;
     const bool ours = json.is_object() && (json.contains("deepest_leak") ||
                                            json.value("format", Json()) == "spherule-report" ||
@@ -268,9 +268,9 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
       source = file;
       continue;
     }
-    if (const auto document = json_in(file); is_by_links(document.root())) {
+    if (const auto document = json_in(file); is_by_links(document)) {
       std::vector<ViewItem> items = blame_file<Json::exception>(
-          file, [&] { return report_items(robot, document.root(), file); });
+          file, [&] { return report_items(robot, document, file); });
       std::move(items.begin(), items.end(), std::back_inserter(scene.items));
       continue;
     }

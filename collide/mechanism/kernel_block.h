@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// A block of up to sixteen configurations, one in each lane. Part of the kernels, see
-// kernel_block.h.
+// The check kernels, compiled once for each instruction set: the including file defines
+// SPHERULE_KERNEL, a namespace of its own. Vectors are those of the compiler, which makes of them
+// what the machine has. Nothing here comes from a header with inline functions, which the linker
+// could share between files that were compiled for different machines.
+//
+// Which instructions and which order of operations are used changes the rounding, and so what is
+// found apart, but not the answer: a pair that is not surely apart or surely in contact is
+// confirmed elsewhere.
+//
+// A block of up to sixteen configurations, one in each lane.
 //
 // Neighbours on a path differ little. One search for the configuration in the middle, with the
 // body grown by how far it is from there in any other, finds the few pairs of leaves that may touch
@@ -219,21 +227,6 @@ class BlockPair {
   ConfirmContact confirm_;
   void* context_;
 };
-
-}  // namespace
-}  // namespace spherule::internal::SPHERULE_KERNEL
-
-// The check kernels, compiled once for each instruction set: the including file defines
-// SPHERULE_KERNEL, a namespace of its own. Vectors are those of the compiler, which makes of them
-// what the machine has. Nothing here comes from a header with inline functions, which the linker
-// could share between files that were compiled for different machines.
-//
-// Which instructions and which order of operations are used changes the rounding, and so what is
-// found apart, but not the answer: a pair that is not surely apart or surely in contact is
-// confirmed elsewhere.
-
-namespace spherule::internal::SPHERULE_KERNEL {
-namespace {
 
 void place(const KernelProblem& problem, const double* configuration,
            const KernelScratch& scratch) {

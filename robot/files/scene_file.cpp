@@ -327,18 +327,18 @@ class SceneReader {
   SceneDescription scene_;
 };
 
-internal::JsonDocument<Json> parsed(const std::string& text, const std::string& file) {
-  auto document = internal::parse_json<Json>(
+Json parsed(const std::string& text, const std::string& file) {
+  Json document = internal::parse_json<Json>(
       text, [&](const std::string& reason) { throw Error(file, reason); });
-  if (!document.root().is_object()) throw Error(file, "is not an object");
+  if (!document.is_object()) throw Error(file, "is not an object");
   return document;
 }
 
 }  // namespace
 
 SceneDescription read_scene(const fs::path& path) {
-  const internal::JsonDocument<Json> document = parsed(read_file(path), path.string());
-  return SceneReader(path, document.root()).read();
+  const Json document = parsed(read_file(path), path.string());
+  return SceneReader(path, document).read();
 }
 
 }  // namespace spherule

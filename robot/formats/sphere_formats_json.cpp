@@ -18,7 +18,7 @@ constexpr const char* kFormat = "spherule-robot-spheres";
 constexpr std::uint64_t kVersion = 1;
 constexpr const char* kOneMeshFormat = "spherule-spheres";
 
-JsonDocument<Json> parsed(std::string_view text, const SphereGatherer& gathered) {
+Json parsed(std::string_view text, const SphereGatherer& gathered) {
   return parse_json<Json>(text, [&](const std::string& reason) { gathered.refuse({}, reason); });
 }
 
@@ -205,8 +205,7 @@ std::string sphere_list(const std::vector<Sphere>& spheres, const char* center) 
 SphereFormatFile read_sphere_json(std::string_view text, const std::filesystem::path& path,
                                   const SphereReadOptions& options) {
   Reader reader(path.string());
-  const JsonDocument<Json> owner = parsed(text, reader.gathered);
-  const Json& document = owner.root();
+  const Json document = parsed(text, reader.gathered);
   const auto one_mesh = [&] { reader.gathered.begin_link(options.link, ""); };
   SphereFormat format = SphereFormat::kFoam;
   if (document.is_array()) {
