@@ -4,6 +4,7 @@
 #include "base/parser_fault.h"
 
 #include <nlohmann/json.hpp>
+
 #include <set>
 #include <vector>
 
@@ -72,7 +73,8 @@ Json parse_json(std::string_view text, const std::function<void(const std::strin
   return Json::parse(text);
 }
 
-template nlohmann::json parse_json(std::string_view, const std::function<void(const std::string&)>&);
+template nlohmann::json parse_json(std::string_view,
+                                   const std::function<void(const std::string&)>&);
 template nlohmann::ordered_json parse_json(std::string_view,
                                            const std::function<void(const std::string&)>&);
 

@@ -3,9 +3,10 @@
 
 // JSON texts, with what nlohmann's parser lets pass refused.
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 

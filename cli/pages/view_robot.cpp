@@ -269,8 +269,8 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
       continue;
     }
     if (const auto document = json_in(file); is_by_links(document)) {
-      std::vector<ViewItem> items = blame_file<Json::exception>(
-          file, [&] { return report_items(robot, document, file); });
+      std::vector<ViewItem> items =
+          blame_file<Json::exception>(file, [&] { return report_items(robot, document, file); });
       std::move(items.begin(), items.end(), std::back_inserter(scene.items));
       continue;
     }
