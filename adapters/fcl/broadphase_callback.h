@@ -40,32 +40,12 @@ using fcl::DefaultDistanceData;
 // Contacts of all pairs are added to the result until num_max_contacts are there, as FCL does;
 // clear it, and `done`, before the next query. Throws Error as collide() does.
 template <class S>
-bool DefaultCollisionFunction(fcl::CollisionObject<S>* o1, fcl::CollisionObject<S>* o2,
-                              void* data) {
-  auto& query = *static_cast<fcl::DefaultCollisionData<S>*>(data);
-  if (query.done) return true;
-  const auto& a = internal::object<S>(o1, "o1");
-  const auto& b = internal::object<S>(o2, "o2");
-  internal::add_contacts(a.collisionGeometry().get(), a.getTransform(), b.collisionGeometry().get(),
-                         b.getTransform(), query.request, query.result);
-  query.done = query.result.numContacts() >= query.request.num_max_contacts;
-  return query.done;
-}
+bool DefaultCollisionFunction(fcl::CollisionObject<S>* o1, fcl::CollisionObject<S>* o2, void* data);
 
 // The result is that of the pair with the smallest lower bound of its distance so far; it ends at
 // the first pair that touches (-1).
 template <class S>
 bool DefaultDistanceFunction(fcl::CollisionObject<S>* o1, fcl::CollisionObject<S>* o2, void* data,
-                             S& dist) {
-  auto& query = *static_cast<fcl::DefaultDistanceData<S>*>(data);
-  if (!query.done) {
-    fcl::DistanceResult<S> pair;
-    fcl_api::distance(o1, o2, query.request, pair);
-    query.result.update(pair);
-    query.done = query.result.min_distance <= S(0);
-  }
-  dist = query.result.min_distance;
-  return query.done;
-}
+                             S& dist);
 
 }  // namespace spherule::fcl_api

@@ -12,7 +12,8 @@
 // - A model is its triangles and its inside, grown by up to E where the spheres decide. FCL's
 //   models are surfaces.
 // - None of the functions reads what requests say of FCL's solvers (gjk_*, cached_gjk_guess).
-// A transform is checked when it is queried, see from_fcl(). Errors name the argument.
+// S is float or double. A transform is checked when it is queried, see from_fcl(). Errors name the
+// argument.
 //
 // @code{.cpp}
 // #include <spherule/adapters/fcl/collide.h>
@@ -30,9 +31,7 @@
 // @endcode
 
 #include "adapters/fcl/conversions.h"
-#include "adapters/fcl/part_query.h"
 #include "adapters/fcl/sphere_model.h"
-#include "collide/sweep.h"
 
 #include <fcl/narrowphase/collision_object.h>
 #include <fcl/narrowphase/collision_request.h>
@@ -42,11 +41,7 @@
 #include <fcl/narrowphase/distance_request.h>
 #include <fcl/narrowphase/distance_result.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <string>
 
 namespace spherule::fcl_api {
 
@@ -79,88 +74,6 @@ using fcl::DistanceResult;
 using fcl::DistanceResultd;
 using fcl::DistanceResultf;
 
-namespace internal {
-
-template <class S>
-const CoveredPart& part_of(const fcl::CollisionGeometry<S>* geometry, const char* argument) {
-  const auto* model = dynamic_cast<const SphereModel<S>*>(geometry);
-  if (model) return model->part();
-  throw Error(argument, geometry ? "this geometry has no spheres; sphere_model() makes them"
-                                 : "there is no geometry");
-}
-
-template <class S>
-Pose pose_of(const fcl::Transform3<S>& transform, const char* argument) {
-  try {
-    return from_fcl(transform);
-  } catch (const Error& error) {
-    throw Error(argument, error.reason());
-  }
-}
-
-template <class S>
-const fcl::CollisionObject<S>& object(const fcl::CollisionObject<S>* object, const char* argument) {
-  if (!object) throw Error(argument, "there is no object");
-  return *object;
-}
-
-// Not above `value`, if S is coarser.
-template <class S>
-S rounded_down(double value) {
-  const S rounded = static_cast<S>(value);
-  const S below = std::nextafter(rounded, -std::numeric_limits<S>::infinity());
-  return static_cast<double>(rounded) <= value ? rounded : below;
-}
-
-// Adds to the result what is in contact, as long as fewer than `num_max_contacts` are there.
-template <class S>
-void add_contacts(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
-                  const fcl::CollisionGeometry<S>* o2, const fcl::Transform3<S>& tf2,
-                  const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result) {
-  if (request.num_max_contacts == 0) throw Error("num_max_contacts", "must not be 0");
-  if (request.enable_cost) throw Error("enable_cost", "spheres have no cost");
-  const PlacedPart a{part_of(o1, "o1"), pose_of<S>(tf1, "tf1")};
-  const PlacedPart b{part_of(o2, "o2"), pose_of<S>(tf2, "tf2")};
-  if (result.numContacts() >= request.num_max_contacts) return;
-  const std::size_t most = request.num_max_contacts - result.numContacts();
-  for (const PartContact& found : contacts(a, b, most, request.enable_contact)) {
-    fcl::Contact<S> contact;
-    contact.o1 = o1;
-    contact.o2 = o2;
-    contact.b1 = found.b1;
-    contact.b2 = found.b2;
-    contact.normal = found.normal.template cast<S>();
-    contact.pos = found.point.template cast<S>();
-    contact.penetration_depth = static_cast<S>(found.depth);
-    result.addContact(contact);
-  }
-}
-
-inline double sweep_resolution(double toc_err) {
-  if (!(toc_err > 0.0)) throw Error("toc_err", "must be above zero");
-  return std::clamp(toc_err, 0x1p-40, 1.0);
-}
-
-// FCL's motion from one transform to another. A turn under CCDM_TRANS, which FCL leaves out, would
-// be one that is not checked.
-template <class S>
-Motion motion(const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
-              fcl::CCDMotionType type, const char* begin_name, const char* end_name) {
-  const Pose first = pose_of<S>(begin, begin_name);
-  const Pose last = pose_of<S>(end, end_name);
-  if (type == fcl::CCDM_TRANS && !begin.linear().isApprox(end.linear())) {
-    throw Error("ccd_motion_type", "CCDM_TRANS leaves out the rotation between " +
-                                       std::string(begin_name) + " and " + end_name +
-                                       "; CCDM_LINEAR does not");
-  }
-  if (type != fcl::CCDM_TRANS && type != fcl::CCDM_LINEAR) {
-    throw Error("ccd_motion_type", "only CCDM_TRANS and CCDM_LINEAR are supported");
-  }
-  return Motion::between(first, last);
-}
-
-}  // namespace internal
-
 // Whether two placed models collide, and where: the number of contacts.
 //
 // Never 0 if the triangles or the insides of the two models have a point in common (G1, G4). If it
@@ -181,21 +94,12 @@ Motion motion(const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
 template <class S>
 std::size_t collide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
                     const fcl::CollisionGeometry<S>* o2, const fcl::Transform3<S>& tf2,
-                    const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result) {
-  result.clear();
-  internal::add_contacts(o1, tf1, o2, tf2, request, result);
-  return result.numContacts();
-}
+                    const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result);
 
 // Whether two objects touch where they stand: collide() of their geometries at their transforms.
 template <class S>
 std::size_t collide(const fcl::CollisionObject<S>* o1, const fcl::CollisionObject<S>* o2,
-                    const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result) {
-  const auto& a = internal::object(o1, "o1");
-  const auto& b = internal::object(o2, "o2");
-  return fcl_api::collide(a.collisionGeometry().get(), a.getTransform(),
-                          b.collisionGeometry().get(), b.getTransform(), request, result);
-}
+                    const fcl::CollisionRequest<S>& request, fcl::CollisionResult<S>& result);
 
 // A lower bound of the distance of two placed models, returned and as min_distance: no two of their
 // points are nearer, and of the spheres' distance it falls short by at most abs_err and rounding.
@@ -207,37 +111,12 @@ std::size_t collide(const fcl::CollisionObject<S>* o1, const fcl::CollisionObjec
 template <class S>
 S distance(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1,
            const fcl::CollisionGeometry<S>* o2, const fcl::Transform3<S>& tf2,
-           const fcl::DistanceRequest<S>& request, fcl::DistanceResult<S>& result) {
-  if (request.enable_signed_distance) {
-    throw Error("enable_signed_distance", "is not supported");
-  }
-  const auto tolerance = static_cast<double>(request.abs_err);
-  if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
-    throw Error("abs_err", "must be finite and not negative");
-  }
-  const internal::PlacedPart a{internal::part_of(o1, "o1"), internal::pose_of<S>(tf1, "tf1")};
-  const internal::PlacedPart b{internal::part_of(o2, "o2"), internal::pose_of<S>(tf2, "tf2")};
-  const internal::PartDistance found = internal::distance(a, b, tolerance);
-  result.clear();
-  result.min_distance =
-      found.bounds.lower > 0.0 ? internal::rounded_down<S>(found.bounds.lower) : S(-1);
-  result.o1 = o1;
-  result.o2 = o2;
-  result.b1 = found.bounds.nearest.a;
-  result.b2 = found.bounds.nearest.b;
-  for (int i = 0; i < 2; ++i) result.nearest_points[i] = found.points[i].template cast<S>();
-  return result.min_distance;
-}
+           const fcl::DistanceRequest<S>& request, fcl::DistanceResult<S>& result);
 
 // The distance of two objects where they stand: distance() of their geometries at their transforms.
 template <class S>
 S distance(const fcl::CollisionObject<S>* o1, const fcl::CollisionObject<S>* o2,
-           const fcl::DistanceRequest<S>& request, fcl::DistanceResult<S>& result) {
-  const auto& a = internal::object(o1, "o1");
-  const auto& b = internal::object(o2, "o2");
-  return fcl_api::distance(a.collisionGeometry().get(), a.getTransform(),
-                           b.collisionGeometry().get(), b.getTransform(), request, result);
-}
+           const fcl::DistanceRequest<S>& request, fcl::DistanceResult<S>& result);
 
 // Whether two models collide while they move: is_collide is false only if they are proved free at
 // every instant (G6, sweep()), never by samples. Otherwise time_of_contact, which is returned, is
@@ -255,36 +134,13 @@ S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S
                     const fcl::Transform3<S>& tf1_end, const fcl::CollisionGeometry<S>* o2,
                     const fcl::Transform3<S>& tf2_beg, const fcl::Transform3<S>& tf2_end,
                     const fcl::ContinuousCollisionRequest<S>& request,
-                    fcl::ContinuousCollisionResult<S>& result) {
-  const CoveredPart& a = internal::part_of(o1, "o1");
-  const CoveredPart& b = internal::part_of(o2, "o2");
-  const auto type = request.ccd_motion_type;
-  const Motion motion_a = internal::motion<S>(tf1_beg, tf1_end, type, "tf1_beg", "tf1_end");
-  const Motion motion_b = internal::motion<S>(tf2_beg, tf2_end, type, "tf2_beg", "tf2_end");
-  const double resolution = internal::sweep_resolution(static_cast<double>(request.toc_err));
-  const SweepResult swept =
-      sweep(*a.spheres, motion_a, *b.spheres, motion_b, {.resolution = resolution});
-  const bool is_free = swept.verdict == Verdict::kFree;
-  const double until = is_free ? 1.0 : swept.free_until;
-  const double contact_at = swept.verdict == Verdict::kCollision ? swept.contact_at : until;
-  result.is_collide = !is_free;
-  result.time_of_contact = internal::rounded_down<S>(until);
-  result.contact_tf1 = to_fcl<S>(motion_a.pose_at(contact_at));
-  result.contact_tf2 = to_fcl<S>(motion_b.pose_at(contact_at));
-  return result.time_of_contact;
-}
+                    fcl::ContinuousCollisionResult<S>& result);
 
 // continuousCollide() of the geometries of two objects, from where they stand to the given ends.
 template <class S>
 S continuousCollide(const fcl::CollisionObject<S>* o1, const fcl::Transform3<S>& tf1_end,
                     const fcl::CollisionObject<S>* o2, const fcl::Transform3<S>& tf2_end,
                     const fcl::ContinuousCollisionRequest<S>& request,
-                    fcl::ContinuousCollisionResult<S>& result) {
-  const auto& a = internal::object(o1, "o1");
-  const auto& b = internal::object(o2, "o2");
-  return fcl_api::continuousCollide(a.collisionGeometry().get(), a.getTransform(), tf1_end,
-                                    b.collisionGeometry().get(), b.getTransform(), tf2_end, request,
-                                    result);
-}
+                    fcl::ContinuousCollisionResult<S>& result);
 
 }  // namespace spherule::fcl_api

@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "adapters/fcl/collide.h"
+#include "adapters/fcl/broadphase_callback.h"
 #include "base/error.h"
 #include "collide/collide.h"
+#include "collide/motion/motion.h"
 #include "geometry/point_triangle.h"
 #include "spheretree/build.h"
 #include "tests/adapters/fcl/models.h"
+#include "tests/support/effort.h"
+#include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
+#include "tests/support/shapes.h"
 
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <set>
@@ -25,6 +34,12 @@ namespace spherule {
 namespace {
 
 namespace api = fcl_api;
+
+using fcl_api::from_fcl;
+using fcl_api::to_fcl;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 fcl::Transform3d at(double x, double y, double z) {
   fcl::Transform3d transform = fcl::Transform3d::Identity();
@@ -40,14 +55,15 @@ std::shared_ptr<api::SphereModel<S>> row_of_spheres(int count) {
       std::make_shared<const SphereTree>(build_tree(spheres)));
 }
 
-template <class Ask>
-std::string subject_of(const Ask& query) {
+// What the call throws says `text`; "none" for a call that is to throw nothing.
+void expect_refusal(const std::string& text, const std::function<void()>& call) {
+  std::string said = "none";
   try {
-    query();
+    call();
   } catch (const Error& error) {
-    return error.subject();
+    said = error.what();
   }
-  return "none";
+  EXPECT_NE(said.find(text), said.npos) << text << ", not " << said;
 }
 
 TEST(FclQueries, ContactsAreSpheresThatTouch) {
@@ -253,39 +269,37 @@ TEST(FclQueries, BoxesHoldTheSpheres) {
 TEST(FclQueries, WhatCannotBeAnsweredIsAnError) {
   const auto row = row_of_spheres<double>(3);
   const auto bare = test::fcl_model<fcl::OBBRSSd>(test::fcl_test_mesh("cube"));
-  const fcl::Transform3d id = fcl::Transform3d::Identity();
-  fcl::Transform3d bad = id;
-  bad.translation()[1] = std::numeric_limits<double>::quiet_NaN();
+  const fcl::Transform3d id = fcl::Transform3d::Identity(), bad = at(0.0, kNan, 0.0);
+  const api::CollisionRequestd any, none(0), costs(1, false, 1, true);
+  struct Case {
+    const fcl::CollisionGeometryd* o1;
+    fcl::Transform3d tf1;
+    const fcl::CollisionGeometryd* o2;
+    fcl::Transform3d tf2;
+    const api::CollisionRequestd& request;
+    std::string subject;
+  };
   api::CollisionResultd result;
-  const auto collide_with = [&](const fcl::CollisionGeometryd* o1, const fcl::Transform3d& tf1,
-                                const fcl::CollisionGeometryd* o2, const fcl::Transform3d& tf2,
-                                const api::CollisionRequestd& request) {
-    return subject_of([&] { api::collide(o1, tf1, o2, tf2, request, result); });
-  };
-  const api::CollisionRequestd request;
-  EXPECT_EQ(collide_with(bare.get(), id, row.get(), id, request), "o1");
-  EXPECT_EQ(collide_with(row.get(), id, bare.get(), id, request), "o2");
-  EXPECT_EQ(collide_with(row.get(), id, nullptr, id, request), "o2");
-  EXPECT_EQ(collide_with(row.get(), bad, row.get(), id, request), "tf1");
-  EXPECT_EQ(collide_with(row.get(), id, row.get(), bad, request), "tf2");
-  EXPECT_EQ(collide_with(row.get(), id, row.get(), id, api::CollisionRequestd(0)),
-            "num_max_contacts");
-  EXPECT_EQ(collide_with(row.get(), id, row.get(), id, api::CollisionRequestd(1, false, 1, true)),
-            "enable_cost");
-  EXPECT_EQ(collide_with(row.get(), id, row.get(), id, request), "none");
+  for (const Case& c : {Case{bare.get(), id, row.get(), id, any, "o1:"},
+                        Case{row.get(), id, bare.get(), id, any, "o2:"},
+                        Case{row.get(), id, nullptr, id, any, "o2:"},
+                        Case{row.get(), bad, row.get(), id, any, "tf1:"},
+                        Case{row.get(), id, row.get(), bad, any, "tf2:"},
+                        Case{row.get(), id, row.get(), id, none, "num_max_contacts:"},
+                        Case{row.get(), id, row.get(), id, costs, "enable_cost:"},
+                        Case{row.get(), id, row.get(), id, any, "none"}}) {
+    expect_refusal(c.subject, [&] { api::collide(c.o1, c.tf1, c.o2, c.tf2, c.request, result); });
+  }
   const api::CollisionObjectd object(row);
-  EXPECT_EQ(subject_of([&] { api::collide<double>(&object, nullptr, request, result); }), "o2");
-
-  api::DistanceResultd distance;
-  const auto distance_with = [&](const api::DistanceRequestd& queried) {
-    return subject_of([&] { api::distance(&object, &object, queried, distance); });
-  };
-  EXPECT_EQ(distance_with(api::DistanceRequestd(true, true)), "enable_signed_distance");
-  EXPECT_EQ(distance_with(api::DistanceRequestd(true, false, 0.0, -1.0)), "abs_err");
-  EXPECT_EQ(distance_with(
-                api::DistanceRequestd(true, false, 0.0, std::numeric_limits<double>::infinity())),
-            "abs_err");
-  EXPECT_EQ(distance_with(api::DistanceRequestd()), "none");
+  expect_refusal("o2:", [&] { api::collide<double>(&object, nullptr, any, result); });
+  using Request = api::DistanceRequestd;
+  for (const auto& c : {std::pair(Request(true, true), "enable_signed_distance:"),
+                        std::pair(Request(true, false, 0.0, -1.0), "abs_err:"),
+                        std::pair(Request(true, false, 0.0, kInfinity), "abs_err:"),
+                        std::pair(Request(), "none")}) {
+    api::DistanceResultd distance;
+    expect_refusal(c.second, [&] { api::distance(&object, &object, c.first, distance); });
+  }
 }
 
 // An fcl:: that was overlooked is no silent "free".
@@ -312,6 +326,234 @@ TEST(FclQueries, ModelsNeedSpheres) {
   EXPECT_THROW(api::SphereModeld{part}, Error);
   EXPECT_THROW(api::cover_part({}), Error);
   EXPECT_THROW(api::cover_part(test::fcl_test_mesh("cube"), {.fit = {.max_error = -1.0}}), Error);
+}
+
+template <class S>
+void expect_there_and_back(std::uint64_t seed, double error) {
+  test::Random random(seed);
+  for (int i = 0; i < 200; ++i) {
+    const fcl::Transform3d exact = test::random_transform(random, 10.0);
+    const fcl::Transform3<S> transform = exact.cast<S>();
+    const Pose pose = from_fcl(transform);
+    const fcl::Transform3<S> back = to_fcl<S>(pose);
+    EXPECT_LE((pose.matrix() - exact.linear()).cwiseAbs().maxCoeff(), error);
+    EXPECT_EQ(pose.translation(), transform.translation().template cast<double>());
+    EXPECT_LE((back.linear() - transform.linear()).cwiseAbs().maxCoeff(), S(error));
+    EXPECT_EQ(back.translation(), transform.translation());
+  }
+}
+
+TEST(FclConversions, TransformsGoThereAndBack) {
+  expect_there_and_back<double>(1, 1e-14);
+  expect_there_and_back<float>(2, 3e-7);
+}
+
+TEST(FclConversions, WhatIsNoTransformIsAnError) {
+  const auto expect_error = [](const auto& spoil) {
+    fcl::Transform3d transform = fcl::Transform3d::Identity();
+    spoil(transform);
+    EXPECT_THROW((void)from_fcl(transform), Error);
+    EXPECT_THROW((void)from_fcl(fcl::Transform3f(transform.cast<float>())), Error);
+  };
+  expect_error([&](fcl::Transform3d& t) { t.linear()(1, 2) = kNan; });
+  expect_error([&](fcl::Transform3d& t) { t.translation()[0] = kNan; });
+  expect_error([&](fcl::Transform3d& t) { t.translation()[2] = kInfinity; });
+  expect_error([&](fcl::Transform3d& t) { t.translation()[2] = 1e16; });
+  expect_error([&](fcl::Transform3d& t) { t.linear() *= 1.001; });
+  expect_error([&](fcl::Transform3d& t) { t.linear()(0, 1) = 0.001; });
+  expect_error([&](fcl::Transform3d& t) { t.linear()(0, 0) = -1.0; });
+  expect_error([&](fcl::Transform3d& t) { t.linear().setZero(); });
+}
+
+template <class BV>
+void expect_mesh(const TriangleMesh& mesh) {
+  using S = typename BV::S;
+  const TriangleMesh read = from_fcl(*test::fcl_model<BV>(mesh));
+  ASSERT_EQ(read.triangles.size(), mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d corner = mesh.vertices[static_cast<std::size_t>(mesh.triangles[i][k])];
+      EXPECT_EQ(read.vertices[static_cast<std::size_t>(read.triangles[i][k])],
+                corner.cast<S>().template cast<double>());
+    }
+  }
+}
+
+TEST(FclConversions, TrianglesAreThoseOfTheModel) {
+  const TriangleMesh mesh = test::fcl_test_mesh("cylinder");
+  expect_mesh<fcl::OBBRSSd>(mesh);
+  expect_mesh<fcl::OBBd>(mesh);
+  expect_mesh<fcl::AABBd>(mesh);
+  expect_mesh<fcl::OBBf>(mesh);
+}
+
+TEST(FclConversions, ModelsThatAreNoMeshAreErrors) {
+  fcl::BVHModel<fcl::OBBRSSd> model, points;
+  const auto expect = [](const std::string& text, const fcl::BVHModel<fcl::OBBRSSd>& given) {
+    expect_refusal(text, [&] { from_fcl(given); });
+  };
+  expect("FCL model: it is not finished, endModel()", model);
+  model.beginModel();
+  model.addTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  expect("endModel", model);
+  model.endModel();
+  expect("none", model);
+  for (const std::size_t index : {std::size_t{3}, std::numeric_limits<std::size_t>::max()}) {
+    model.tri_indices[0][2] = index;
+    expect("out of range", model);
+  }
+  model.tri_indices[0][2] = 2;
+  model.vertices[1][0] = kNan;
+  expect("not finite", model);
+  points.beginModel();
+  points.addSubModel({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  points.endModel();
+  expect("no triangles", points);
+}
+
+TEST(FclContinuous, FreeIsFreeAllTheWay) {
+  const auto bracket = test::covered_model("bracket"), probe = test::covered_model("probe");
+  const FclSolid solid_bracket(test::fcl_test_mesh("bracket")),
+      solid_probe(test::fcl_test_mesh("probe"));
+  const int steps = test::effort(200, 40);
+  api::ContinuousCollisionRequestd request;
+  request.ccd_motion_type = fcl::CCDM_LINEAR;
+  test::Random random(1);
+  int free = 0, collisions = 0;
+  for (int i = 0; i < test::effort(150, 20); ++i) {
+    const fcl::Transform3d bracket_from = test::random_transform(random, 50.0);
+    const fcl::Transform3d bracket_to = test::random_transform(random, 50.0);
+    const fcl::Transform3d probe_from = test::random_transform(random, 300.0);
+    const fcl::Transform3d probe_to = test::random_transform(random, 300.0);
+    api::ContinuousCollisionResultd result;
+    const double until = api::continuousCollide(bracket.get(), bracket_from, bracket_to,
+                                                probe.get(), probe_from, probe_to, request, result);
+    EXPECT_EQ(until, result.time_of_contact);
+    const Motion motion_a = Motion::between(api::from_fcl(bracket_from), api::from_fcl(bracket_to));
+    const Motion motion_b = Motion::between(api::from_fcl(probe_from), api::from_fcl(probe_to));
+    double first = 2.0;
+    for (int k = 0; k <= steps && first > 1.0; ++k) {
+      const double t = static_cast<double>(k) / steps;
+      if (touch(solid_bracket, motion_a.pose_at(t), solid_probe, motion_b.pose_at(t))) first = t;
+    }
+    if (result.is_collide) {
+      ++collisions;
+      EXPECT_LT(until, 1.0);
+      EXPECT_LE(until, first);
+    } else {
+      ++free;
+      EXPECT_EQ(until, 1.0);
+      EXPECT_GT(first, 1.0);
+    }
+  }
+  std::cout << free << " free, " << collisions << " not\n";
+  EXPECT_GT(free, 0);
+  EXPECT_GT(collisions, 0);
+}
+
+// The contact's transforms are ones at which the spheres touch.
+TEST(FclContinuous, FindsAThinWallThatSamplesMiss) {
+  const TriangleMesh wall_mesh = make_box({1, 200, 200});
+  const auto wall = api::sphere_model(*test::fcl_model<fcl::OBBRSSd>(wall_mesh),
+                                      {.fit = {.max_error = 10.0, .effort = 0}});
+  const auto probe = test::covered_model("probe");
+  const auto fcl_wall = test::fcl_model<fcl::OBBRSSd>(wall_mesh);
+  const auto fcl_probe = test::fcl_model<fcl::OBBRSSd>(test::fcl_test_mesh("probe"));
+  const fcl::Transform3d still = fcl::Transform3d::Identity();
+  fcl::Transform3d from = still, to = still;
+  from.translation()[0] = -1000.0;
+  to.translation()[0] = 1000.0;
+  const api::ContinuousCollisionRequestd request;
+  fcl::ContinuousCollisionResultd sampled;
+  fcl::continuousCollide<double>(fcl_wall.get(), still, still, fcl_probe.get(), from, to, request,
+                                 sampled);
+  EXPECT_FALSE(sampled.is_collide);
+
+  api::ContinuousCollisionResultd result;
+  const api::CollisionObjectd o1(wall, still), o2(probe, from);
+  const double until = api::continuousCollide(&o1, still, &o2, to, request, result);
+  EXPECT_TRUE(result.is_collide);
+  EXPECT_LE(until, 0.49725);  // where the meshes meet
+  EXPECT_GE(until, 0.48);
+  EXPECT_TRUE(collides(*wall->part().spheres, api::from_fcl(result.contact_tf1),
+                       *probe->part().spheres, api::from_fcl(result.contact_tf2)));
+}
+
+TEST(FclContinuous, WhatCannotBeProvedIsAnError) {
+  const auto probe = test::covered_model("probe");
+  const fcl::Transform3d still = fcl::Transform3d::Identity();
+  fcl::Transform3d turned = still, scaled = still;
+  turned.linear() = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  scaled.linear() *= 2.0;
+  struct Case {
+    const fcl::Transform3d& end;
+    fcl::CCDMotionType type;
+    double toc_err;
+    std::string subject;
+  };
+  for (const Case& c : {Case{turned, fcl::CCDM_LINEAR, 1e-4, "none"},
+                        Case{turned, fcl::CCDM_TRANS, 1e-4, "ccd_motion_type:"},
+                        Case{still, fcl::CCDM_SCREW, 1e-4, "ccd_motion_type:"},
+                        Case{still, fcl::CCDM_SPLINE, 1e-4, "ccd_motion_type:"},
+                        Case{still, fcl::CCDM_LINEAR, 0.0, "toc_err:"},
+                        Case{still, fcl::CCDM_LINEAR, kNan, "toc_err:"},
+                        Case{still, fcl::CCDM_LINEAR, 1e-30, "none"},
+                        Case{scaled, fcl::CCDM_LINEAR, 1e-4, "tf1_end:"}}) {
+    api::ContinuousCollisionResultd result;
+    const api::ContinuousCollisionRequestd request(10, c.toc_err, c.type);
+    expect_refusal(c.subject, [&] {
+      api::continuousCollide(probe.get(), still, c.end, probe.get(), still, still, request, result);
+    });
+  }
+}
+
+// One object against all that a manager holds: as asking each.
+TEST(FclBroadphase, AnswersAsAskingEveryPair) {
+  test::Random random(1);
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
+  fcl::DynamicAABBTreeCollisionManagerd manager;
+  for (int i = 0; i < 40; ++i) {
+    const auto model = test::covered_model(random.index(2) == 0 ? "cube" : "bracket");
+    objects.push_back(
+        std::make_unique<fcl::CollisionObjectd>(model, test::random_transform(random, 1000.0)));
+    manager.registerObject(objects.back().get());
+  }
+  manager.setup();
+  int collisions = 0;
+  for (int i = 0; i < 60; ++i) {
+    fcl::CollisionObjectd probe(test::covered_model("probe"),
+                                test::random_transform(random, 1200.0));
+    std::size_t contacts = 0;
+    double nearest = kInfinity;
+    for (const auto& object : objects) {
+      api::CollisionResultd result;
+      contacts += api::collide(object.get(), &probe, api::CollisionRequestd(1000), result);
+      api::DistanceResultd distance;
+      nearest =
+          std::min(nearest, api::distance(object.get(), &probe, api::DistanceRequestd(), distance));
+    }
+    api::DefaultCollisionData<double> all, any;
+    all.request.num_max_contacts = 100000;
+    manager.collide(&probe, &all, api::DefaultCollisionFunction<double>);
+    EXPECT_EQ(all.result.numContacts(), contacts);
+    EXPECT_FALSE(all.done);
+    manager.collide(&probe, &any, api::DefaultCollisionFunction<double>);
+    EXPECT_EQ(any.result.numContacts(), contacts > 0 ? 1u : 0u);
+    EXPECT_EQ(any.done, contacts > 0);
+    api::DefaultDistanceData<double> distance;
+    manager.distance(&probe, &distance, api::DefaultDistanceFunction<double>);
+    EXPECT_EQ(distance.result.min_distance, nearest);
+    collisions += contacts > 0;
+  }
+  EXPECT_GT(collisions, 2);
+  EXPECT_LT(collisions, 50);
+
+  fcl::CollisionObjectd bare(test::fcl_model<fcl::OBBRSSd>(test::fcl_test_mesh("probe")),
+                             objects.front()->getTransform());
+  api::DefaultCollisionData<double> data;
+  EXPECT_THROW(manager.collide(&bare, &data, api::DefaultCollisionFunction<double>), Error);
+  api::DefaultDistanceData<double> distance;
+  EXPECT_THROW(manager.distance(&bare, &distance, api::DefaultDistanceFunction<double>), Error);
 }
 
 }  // namespace

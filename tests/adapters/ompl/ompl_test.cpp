@@ -4,15 +4,17 @@
 #include "adapters/ompl/state_validity_checker.h"
 #include "base/error.h"
 #include "robot/check/robot_scene.h"
-#include "tests/adapters/ompl/planar_arm.h"
+#include "spheretree/build.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <barrier>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <ompl/base/ScopedState.h>
@@ -23,6 +25,7 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -33,10 +36,67 @@ namespace {
 
 namespace ob = ompl::base;
 
-using test::planar_arm_gap;
 using Configuration = std::vector<double>;
 
 constexpr double kRounding = 1e-9;
+
+constexpr int kArmJoints = 3;
+constexpr double kLength = 0.5;
+constexpr double kSphere = 0.05;
+constexpr int kSpheres = 11;
+constexpr double kWallSphere = 0.06;
+constexpr double kWallBegin = 0.95, kWallStep = 0.08;
+constexpr int kWallSpheres = 9;
+
+std::shared_ptr<const SphereTree> row(double begin, double step, int count, double radius) {
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < count; ++i) spheres.push_back({{begin + step * i, 0.0, 0.0}, radius});
+  return std::make_shared<const SphereTree>(build_tree(spheres));
+}
+
+// Three links of 0.5 m in the plane, turning about z, the first without limits, made of spheres of
+// 0.05 m, and a wall of spheres along x that leaves it a gap at its base. Links meet each other
+// only where a joint is turned beyond +-1.5.
+RobotChecker planar_arm() {
+  RobotModel robot("base");
+  std::string parent = "base";
+  for (int i = 0; i < kArmJoints; ++i) {
+    Joint joint;
+    joint.name = "joint_" + std::to_string(i);
+    joint.type = i == 0 ? JointType::kContinuous : JointType::kRevolute;
+    joint.parent_from_joint = Pose::from_translation({i == 0 ? 0.0 : kLength, 0.0, 0.0});
+    joint.lower = -std::numbers::pi;
+    joint.upper = std::numbers::pi;
+    const std::string link = "link_" + std::to_string(i);
+    robot.add_link(link, parent, joint);
+    robot.attach(link, row(0.0, kLength / (kSpheres - 1), kSpheres, kSphere));
+    parent = link;
+  }
+  RobotScene scene(robot);
+  scene.add("wall", row(kWallBegin, kWallStep, kWallSpheres, kWallSphere));
+  return scene.snapshot();
+}
+
+// The smallest gap between any sphere of the arm and of the wall, by trigonometry; below zero where
+// they overlap.
+double planar_arm_gap(std::span<const double> configuration) {
+  double gap = std::numeric_limits<double>::infinity();
+  double x = 0.0, y = 0.0, angle = 0.0;
+  for (const double turn : configuration) {
+    angle += turn;
+    for (int i = 0; i < kSpheres; ++i) {
+      const double along = kLength * i / (kSpheres - 1);
+      for (int k = 0; k < kWallSpheres; ++k) {
+        const double dx = x + along * std::cos(angle) - (kWallBegin + kWallStep * k);
+        const double dy = y + along * std::sin(angle);
+        gap = std::min(gap, std::hypot(dx, dy) - kSphere - kWallSphere);
+      }
+    }
+    x += kLength * std::cos(angle);
+    y += kLength * std::sin(angle);
+  }
+  return gap;
+}
 
 // With its joints in R^3, or the first in SO2.
 struct Planning {
@@ -47,7 +107,7 @@ struct Planning {
       space = std::make_shared<ob::SO2StateSpace>() + space;
     }
     information = std::make_shared<ob::SpaceInformation>(space);
-    const RobotChecker arm = test::planar_arm();
+    const RobotChecker arm = planar_arm();
     states = std::make_shared<StateValidityChecker>(information, arm);
     motions = std::make_shared<MotionValidator>(information, arm, request);
     information->setStateValidityChecker(states);
@@ -208,7 +268,7 @@ TEST(OmplMotions, RealNumbersGoStraight) {
 TEST(OmplStates, MotionsAreThoseOfTheSpace) {
   const auto space = std::make_shared<ob::SO2StateSpace>() + Planning::joints(2);
   space->setup();
-  const RobotStates states(test::planar_arm(), space);
+  const RobotStates states(planar_arm(), space);
   constexpr double kPi = std::numbers::pi;
   test::Random random(7);
   int over_the_ends = 0;
@@ -322,7 +382,7 @@ TEST(OmplThreads, AnswerAsOne) {
 }
 
 TEST(OmplStates, SpacesThatAreNotTheRobotsAreErrors) {
-  const RobotChecker arm = test::planar_arm();
+  const RobotChecker arm = planar_arm();
   const auto expect_error = [&](const ob::StateSpacePtr& space) {
     const auto information = std::make_shared<ob::SpaceInformation>(space);
     EXPECT_THROW(StateValidityChecker(information, arm), Error);
