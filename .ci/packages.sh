@@ -70,7 +70,7 @@ need_benchmarks() {
   need_bench_table
   need_command
   need_adapters
-  packages+=(libbenchmark-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev
+  packages+=(libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev
     libqhull-dev)
 }
 

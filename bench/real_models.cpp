@@ -26,10 +26,6 @@ Pose middle_of_rim(const TriangleMesh& torch) {
       rim.center());
 }
 
-TriangleMesh read_torch(const std::filesystem::path& models) {
-  return read_mesh(models / "torch" / "torch.stl", {.scale = kTorchScale});
-}
-
 }  // namespace
 
 Workload make_real_cell(const std::filesystem::path& models) {
@@ -39,12 +35,9 @@ Workload make_real_cell(const std::filesystem::path& models) {
   for (const Link& link : robot.links()) {
     links.push_back(read_mesh(visual / (link.name + ".stl")));
   }
-  const TriangleMesh torch = read_torch(models);
+  const TriangleMesh torch =
+      read_mesh(models / "torch" / "torch.stl", {.scale = kTorchScale});
   return make_cell("real-irb4400", links, torch, middle_of_rim(torch));
-}
-
-Pose real_flange_from_wire(const std::filesystem::path& models) {
-  return middle_of_rim(read_torch(models));
 }
 
 }  // namespace spherule

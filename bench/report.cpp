@@ -197,13 +197,11 @@ std::vector<Method> make_methods(const Workload& workload) {
   }
   methods.push_back({"fcl-spheres", "Sphere shapes, manager against manager",
                      make_fcl_sphere_checker(workload), spheres, true});
-#if defined(SPHERULE_BENCH_BULLET)
   methods.push_back({"bullet-pair-test", "compounds of spheres, contactPairTest for each pair",
                      make_bullet_sphere_checker(workload, BulletQuery::kContactPairTest), spheres,
                      false});
   methods.push_back({"bullet-trees", "their dynamic AABB trees walked to the first contact",
                      make_bullet_sphere_checker(workload, BulletQuery::kTrees), spheres, false});
-#endif
   methods.push_back({"brute-force-spheres", "all pairs, single precision, widest vectors",
                      make_flat_scan_checker(workload, FlatScan::kAllPairs), spheres, true});
   methods.push_back({"flat-scan-spheres", "the same behind a sphere around each body",

@@ -4,7 +4,6 @@
 #include "bench/checkers/workload.h"
 #include "bench/studies/fit_parts.h"
 #include "bench/studies/measure.h"
-#include "geometry/pose.h"
 
 #include <nlohmann/json.hpp>
 
@@ -72,9 +71,5 @@ inline constexpr const char* kFastestFcl = "fcl-mesh-fastest";
 // The same cell with the published visual meshes of the ABB IRB 4400L and a real torch, from a
 // folder that holds robots/abb_irb4400l and torch/torch.stl. Throws Error if they are not there.
 Workload make_real_cell(const std::filesystem::path& models);
-
-// Where the end of the wire of its torch is, as flange_from_wire() of scenes/torch.h. Throws Error
-// as well.
-Pose real_flange_from_wire(const std::filesystem::path& models);
 
 }  // namespace spherule

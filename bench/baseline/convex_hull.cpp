@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/convex_hull.h"
+#include "bench/baseline/mesh_methods.h"
 
 #include "base/error.h"
 #include "base/rounding.h"

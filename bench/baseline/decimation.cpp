@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/decimation.h"
+#include "bench/baseline/mesh_methods.h"
 
 #include "base/error.h"
 

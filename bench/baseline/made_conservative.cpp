@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/made_conservative.h"
+#include "bench/baseline/sphere_methods.h"
 
 #include "base/error.h"
 #include "base/rounding.h"
-#include "bench/baseline/mesh_probe.h"
+#include "bench/baseline/medial_spheres.h"
 #include "geometry/triangle_mesh.h"
 #include "simplifier/solid/cells.h"
 #include "simplifier/stage2/cover_moves.h"

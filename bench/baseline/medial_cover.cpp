@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/medial_cover.h"
+#include "bench/baseline/sphere_methods.h"
 
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
-#include "bench/baseline/best_reduction.h"
-#include "bench/baseline/made_conservative.h"
 #include "bench/baseline/medial_spheres.h"
-#include "bench/baseline/mesh_probe.h"
-#include "bench/baseline/sphere_reduction.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
 

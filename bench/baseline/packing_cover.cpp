@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/packing_cover.h"
+#include "bench/baseline/sphere_methods.h"
 
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
-#include "bench/baseline/made_conservative.h"
 #include "simplifier/stage2/cover_moves.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/voronoi.h"
+#include "bench/baseline/medial_spheres.h"
 
 #include "base/error.h"
 

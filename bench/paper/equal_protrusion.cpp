@@ -2,7 +2,7 @@
 #include "bench/paper/equal_protrusion.h"
 
 #include "base/error.h"
-#include "bench/baseline/made_conservative.h"
+#include "bench/baseline/sphere_methods.h"
 #include "bench/paper/figures.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"

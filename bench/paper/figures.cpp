@@ -2,7 +2,7 @@
 #include "bench/paper/figures.h"
 
 #include "base/error.h"
-#include "bench/baseline/packing_cover.h"
+#include "bench/baseline/sphere_methods.h"
 #include "bench/studies/fit_parts.h"
 #include "simplifier/simplify.h"
 #include "tests/support/shapes.h"

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "bench/baseline/convex_hull.h"
-#include "bench/baseline/voxelisation.h"
+#include "bench/baseline/mesh_methods.h"
+#include "bench/baseline/sphere_methods.h"
 #include "bench/studies/fit_parts.h"
 #include "tests/support/solids.h"
 

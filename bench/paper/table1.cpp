@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "bench/baseline/medial_axis.h"
-#include "bench/baseline/medial_cover.h"
-#include "bench/baseline/octree_spheres.h"
+#include "bench/baseline/sphere_methods.h"
 #include "bench/checkers/workload.h"
 #include "bench/paper/figures.h"
 #include "bench/studies/measure.h"
@@ -132,10 +130,7 @@ void measure(const SphereTree& rod, const std::vector<Pose>& poses, const Sphere
       times[i].push_back(nanoseconds(Clock::now() - start) / static_cast<double>(poses.size()));
     }
   }
-  for (int i = 0; i < 2; ++i) {
-    std::sort(times[i].begin(), times[i].end());
-    trees[i].second->ns = quantile(times[i], 0.5);
-  }
+  for (int i = 0; i < 2; ++i) trees[i].second->ns = median(times[i]);
 }
 
 }  // namespace

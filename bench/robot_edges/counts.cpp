@@ -113,11 +113,6 @@ constexpr std::size_t kEdges = 2000;
 constexpr std::size_t kSteps = 16;  // of an edge, as a path
 constexpr int kRounds = 9;
 
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
 // The same questions for every checker: edges that all find free, configurations on them and
 // anywhere.
 struct Questions {
@@ -179,7 +174,7 @@ std::vector<Costs> costs_of(std::span<const RobotChecker> checkers, const Questi
   }
   std::vector<Costs> costs;
   for (std::size_t i = 0; i < checkers.size(); ++i) {
-    costs.push_back({median_of(path[i]), median_of(anywhere[i]), median_of(edges[i])});
+    costs.push_back({median(path[i]), median(anywhere[i]), median(edges[i])});
   }
   return costs;
 }

@@ -11,14 +11,6 @@
 #include <utility>
 
 namespace spherule {
-namespace {
-
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
-}  // namespace
 
 void Times::take(std::size_t edge, double ns) {
   if (edge == each_.size()) each_.push_back(ns);
@@ -38,22 +30,15 @@ double Times::mean_us() const {
 }
 
 double Times::median_us() const {
-  return 1e-3 * median_of(each_);
+  return 1e-3 * median(each_);
 }
 
 double Times::median_over(const Times& others) const {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < each_.size(); ++i) ratios.push_back(each_[i] / others.each_[i]);
-  return median_of(std::move(ratios));
+  return median(std::move(ratios));
 }
 
-}  // namespace spherule
-
-#if defined(SPHERULE_BENCH_BULLET)
-#include "bench/robot_edges/bullet_arm.h"
-#endif
-
-namespace spherule {
 namespace {
 
 // The largest step of a joint between configurations that a planner examines (MoveIt: 0.05), and
@@ -82,12 +67,10 @@ Course::Course(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
       obbrss_(arm, allowed, scene, FclVolume::kObbRss),
       obb_(arm, allowed, scene, FclVolume::kObb),
       peers_{&obbrss_, &obb_} {
-#if defined(SPHERULE_BENCH_BULLET)
   for (const BulletLinks links : {BulletLinks::kHulls, BulletLinks::kGImpact}) {
     bullet_.push_back(std::make_unique<BulletArm>(arm, allowed, scene, links));
     peers_.push_back(bullet_.back().get());
   }
-#endif
 }
 
 std::vector<Edge> Course::draw(std::size_t count, RandomNumbers& random) {
@@ -194,9 +177,7 @@ ConfigurationTimes Course::measure_configurations(std::size_t count, bool is_pat
 }
 
 double ConfigurationRow::median_ns() const {
-  std::vector<double> sorted = rounds_ns;
-  std::sort(sorted.begin(), sorted.end());
-  return quantile(sorted, 0.5);
+  return median(rounds_ns);
 }
 
 void ConfigurationTimes::print_head() const {

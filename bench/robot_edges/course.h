@@ -141,7 +141,7 @@ class Course {
   bool has_mesh_;
   FclArm obbrss_;
   FclArm obb_;
-  std::vector<std::unique_ptr<ArmChecker>> bullet_{};  // none if Bullet is not there
+  std::vector<std::unique_ptr<ArmChecker>> bullet_{};
   std::vector<ArmChecker*> peers_;                     // all of these
 };
 

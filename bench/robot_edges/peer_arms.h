@@ -37,6 +37,31 @@ class FclArm : public ArmChecker {
   std::unique_ptr<Parts> parts_;
 };
 
+// What a link is to Bullet.
+enum class BulletLinks {
+  kHulls,    // the convex hull of its mesh, as PyBullet and Tesseract have it: another geometry
+  kGImpact,  // its triangles (btGImpactMeshShape), the only moving ones that Bullet has
+};
+
+// The arm in a scene, and against itself where this is not allowed, by Bullet (single precision, as
+// Debian packages it): margins zero, the obstacles in a dynamic AABB tree of Bullet, what it leaves
+// by contactPairTest, until a pair touches. Primitives are solid, and so are the spheres about the
+// points of a cloud; the scene's mesh is its triangles, a btBvhTriangleMeshShape to hulls.
+class BulletArm : public ArmChecker {
+ public:
+  BulletArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene,
+            BulletLinks links);
+  ~BulletArm() override;
+
+  const char* name() const override;
+  bool collides(std::span<const double> configuration) override;
+
+ private:
+  struct Parts;
+  BulletLinks links_;
+  std::unique_ptr<Parts> parts_;
+};
+
 // The arm's spheres without a hierarchy: all of each link against all obstacles, and all pairs of
 // two links', behind a test of the spheres around links (and, for the points of a cloud, of each
 // point). Double precision, in loops that compilers vectorise. Solid meshes are not queried.

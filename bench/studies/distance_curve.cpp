@@ -125,11 +125,6 @@ Places random_places(const Part& a, const Part& b, double size) {
   return result;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
 // The engines on one set of poses in turn: of each pose the median over the rounds, of these the
 // median.
 template <class Query>

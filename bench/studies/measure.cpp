@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 namespace spherule {
 
@@ -17,6 +18,11 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0.0 : quantile(values, 0.5);
+}
+
 // What two readings of the clock with nothing between them say.
 double clock_cost() {
   std::vector<double> readings(10001);
@@ -24,8 +30,7 @@ double clock_cost() {
     const auto start = Clock::now();
     reading = nanoseconds(Clock::now() - start);
   }
-  std::sort(readings.begin(), readings.end());
-  return quantile(readings, 0.5);
+  return median(std::move(readings));
 }
 
 namespace {

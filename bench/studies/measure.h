@@ -19,6 +19,7 @@ using Clock = std::chrono::steady_clock;
 double nanoseconds(Clock::duration duration);
 
 double quantile(const std::vector<double>& sorted, double share);
+double median(std::vector<double> values);  // 0 of none
 
 // What two readings of the clock with nothing between them say, in nanoseconds.
 double clock_cost();
