@@ -70,8 +70,7 @@ need_benchmarks() {
   need_bench_table
   need_command
   need_adapters
-  packages+=(libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev
-    libqhull-dev)
+  packages+=(libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev libqhull-dev)
 }
 
 # Selects Ninja and ccache for CMake, if they are installed. CMake reads both variables only when a build

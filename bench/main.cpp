@@ -3,7 +3,6 @@
 // right? See bench/README.md for the protocol.
 #include "bench/checkers/workload.h"
 #include "bench/report.h"
-#include "bench/studies/fit_parts.h"
 #include "bench/studies/measure.h"
 #include "tests/support/program.h"
 #ifdef SPHERULE_BENCH_STUDIES

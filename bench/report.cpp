@@ -2,10 +2,8 @@
 #include "bench/report.h"
 
 #include "base/files.h"
-#include "bench/checkers/bullet_sphere_checker.h"
+#include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/fcl_mesh_checker.h"
-#include "bench/checkers/flat_scan_checker.h"
-#include "bench/checkers/tree_checker.h"
 #include "bench/studies/measure.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bench/checkers/workload.h"
-#include "bench/studies/fit_parts.h"
 #include "bench/studies/measure.h"
 
 #include <nlohmann/json.hpp>

@@ -266,11 +266,4 @@ ConvexHull convex_hull(const TriangleMesh& mesh, const ConvexHullOptions& option
   return convex_hull(used, {options.padding + mesh.vertex_error, options.max_expansion}, "mesh");
 }
 
-std::vector<int> polygon_list(const TriangleMesh& mesh) {
-  std::vector<int> list;
-  list.reserve(4 * mesh.triangles.size());
-  for (const Eigen::Vector3i& t : mesh.triangles) list.insert(list.end(), {3, t[0], t[1], t[2]});
-  return list;
-}
-
 }  // namespace spherule

@@ -127,10 +127,6 @@ ConvexHull convex_hull(std::span<const Eigen::Vector3d> points, const ConvexHull
 // extent (as seen along their principal axes).
 int affine_dimension(std::span<const Eigen::Vector3d> points);
 
-// The triangles as a list of polygons, each its number of corners and then these: the form in which
-// FCL's Convex takes faces.
-std::vector<int> polygon_list(const TriangleMesh& mesh);
-
 // Approximate convex decomposition: not conservative. The parts hold the whole surface of the mesh
 // but not always what it encloses; where the surface is concave they stick out, unbounded by the
 // concavity requested. measure_deviation() tells by how much.
@@ -148,8 +144,7 @@ struct ConvexDecompositionOptions {
 
 // The parts, and how far they are from the mesh.
 struct ConvexDecomposition {
-  // Closed, convex up to rounding, facing outwards. polygon_list() turns the
-  // triangles into the faces that FCL's Convex takes, beside the vertices.
+  // Closed, convex up to rounding, facing outwards.
   std::vector<TriangleMesh> parts;
   double volume = 0.0;      // sum of the parts'; where they overlap it counts twice
   MeshDeviation deviation;  // of the parts together, measured; zero if not requested

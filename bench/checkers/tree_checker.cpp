@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/tree_checker.h"
-
+#include "bench/checkers/sphere_checkers.h"
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"
 

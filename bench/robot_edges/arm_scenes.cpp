@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/robot_edges/arm_scenes.h"
-
+#include "bench/robot_edges/arm.h"
 #include "bench/studies/refined_cover.h"
 #include "collide/meshes/solid_mesh.h"
 #include "collide/point_cloud.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/peer_arms.h"
 #include "bench/studies/refined_cover.h"
 #include "collide/sweep.h"
@@ -142,7 +141,7 @@ class Course {
   FclArm obbrss_;
   FclArm obb_;
   std::vector<std::unique_ptr<ArmChecker>> bullet_{};
-  std::vector<ArmChecker*> peers_;                     // all of these
+  std::vector<ArmChecker*> peers_;  // all of these
 };
 
 // What the tests of links against each other cost among fifty primitives: with them and without, in

@@ -8,7 +8,6 @@
 //   SPHERULE_MODELS=DIR spherule_robot_edges [EDGES [RADIUS | SPHERIZED.urdf]...]
 
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/course.h"
 #include "bench/robot_edges/peer_arms.h"
 #include "bench/studies/measure.h"

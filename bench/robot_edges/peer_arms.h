@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "robot/pairs/allowed_collisions.h"
 
 #include <cstddef>

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/peer_arms.h"
 #include "bench/robot_edges/planning.h"
 #include "tests/support/program.h"

@@ -10,6 +10,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -87,5 +89,22 @@ std::vector<DistanceRow> study_distances(const Part& moving, const Part& standin
 nlohmann::ordered_json run_studies(const Workload& workload,
                                    const std::vector<std::uint32_t>& touching_bodies,
                                    const StudyOptions& options);
+
+// A configuration of the first weld, for pictures.
+inline constexpr std::size_t kShownConfiguration = 300;
+
+// Parts in their places, in the world's frame, as meshes and as spheres.
+struct PlacedParts {
+  TriangleMesh mesh;
+  std::vector<Sphere> spheres;
+};
+
+// The cell in one configuration: robot, torch, workpiece and table, by these names.
+std::map<std::string, PlacedParts> place_cell(const Workload& workload,
+                                              const ArmPositions& configuration);
+
+// The same for `spherule view`: FOLDER/PART.stl and FOLDER/PART.spheres.json. Throws Error.
+void write_scene(const Workload& workload, const ArmPositions& configuration,
+                 const std::filesystem::path& folder);
 
 }  // namespace spherule

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/peer_arms.h"
 #include "bench/robot_edges/planning.h"
 #include "bench/studies/refined_cover.h"

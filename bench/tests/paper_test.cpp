@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "bench/checkers/fcl_mesh_checker.h"
-#include "bench/paper/equal_protrusion.h"
-#include "bench/paper/figures.h"
-#include "bench/paper/representations.h"
+#include "bench/paper/paper.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_facts.h"
 #include "tests/support/shapes.h"

@@ -239,12 +239,6 @@ TEST(ConvexHull, FlatInputIsRefusedWithItsReason) {
   EXPECT_THROW(convex_hull(TriangleMesh{}), Error);
 }
 
-TEST(ConvexHull, PolygonsAreListedWithTheirNumberOfCorners) {
-  TriangleMesh mesh;
-  mesh.triangles = {{0, 1, 2}, {2, 1, 3}};
-  EXPECT_EQ(polygon_list(mesh), (std::vector<int>{3, 0, 1, 2, 3, 2, 1, 3}));
-}
-
 // Exactly: the three corners of the triangle lie in the hull, so all of it does.
 bool part_holds(const TriangleMesh& part, const TriangleMesh& mesh,
                 const Eigen::Vector3i& triangle) {

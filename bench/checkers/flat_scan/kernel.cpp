@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#pragma once
-
-// The scan, compiled once for each instruction set: the including file defines
-// SPHERULE_FLAT_KERNEL, a namespace of its own. Nothing here comes from a header with inline
+// The scan, compiled once for each instruction set: the build defines SPHERULE_FLAT_KERNEL, a
+// namespace of its own. Nothing here comes from a header with inline
 // functions, which the linker could share between files that were compiled for different machines.
 
 #include "bench/checkers/flat_scan/kernel.h"
@@ -257,6 +255,8 @@ inline std::uint32_t near_obstacles(const Problem& problem, const Body& body, co
   return near & body.against;
 }
 
+}  // namespace
+
 bool check(const Problem& problem, const double* configuration, const Scratch& scratch) {
   place_links(problem, configuration, scratch.poses);
   for (std::int32_t b = 0; b < problem.body_count; ++b) {
@@ -280,5 +280,4 @@ bool check(const Problem& problem, const double* configuration, const Scratch& s
   return false;
 }
 
-}  // namespace
 }  // namespace spherule::flat_scan::SPHERULE_FLAT_KERNEL
