@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/mesh_methods.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
+#include "bench/baseline/mesh_methods.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

@@ -241,10 +241,6 @@ const std::vector<Method> kMethods = {
     {"cover-medial", "Stage 2 of a fit by AMAA, after stage 1; proved", add_fit_options,
      [](const TriangleMesh& mesh, const Arguments& arguments) {
        return cover_by({"medial", medial_cover}, mesh, arguments);
-     }},
-    {"cover-packing", "Stage 2 of a fit by packing, largest sphere first, after stage 1; proved",
-     add_fit_options, [](const TriangleMesh& mesh, const Arguments& arguments) {
-       return cover_by({"packing", packing_cover}, mesh, arguments);
      }}};
 
 int run(int count, char** values) {

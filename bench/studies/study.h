@@ -107,4 +107,8 @@ std::map<std::string, PlacedParts> place_cell(const Workload& workload,
 void write_scene(const Workload& workload, const ArmPositions& configuration,
                  const std::filesystem::path& folder);
 
+// The same cell with the published visual meshes of the ABB IRB 4400L and a real torch, from a
+// folder that holds robots/abb_irb4400l and torch/torch.stl. Throws Error if they are not there.
+Workload make_real_cell(const std::filesystem::path& models);
+
 }  // namespace spherule

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/report.h"
+#include "bench/studies/study.h"
 #include "io/mesh_io.h"
 
 #include <Eigen/Geometry>
@@ -35,8 +35,7 @@ Workload make_real_cell(const std::filesystem::path& models) {
   for (const Link& link : robot.links()) {
     links.push_back(read_mesh(visual / (link.name + ".stl")));
   }
-  const TriangleMesh torch =
-      read_mesh(models / "torch" / "torch.stl", {.scale = kTorchScale});
+  const TriangleMesh torch = read_mesh(models / "torch" / "torch.stl", {.scale = kTorchScale});
   return make_cell("real-irb4400", links, torch, middle_of_rim(torch));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stage 2 methods that baselines offer: medial_cover() and packing_cover().
+// The stage 2 method that baselines offer.
 #include "base/error.h"
 #include "bench/baseline/medial_spheres.h"
 #include "bench/baseline/sphere_methods.h"
@@ -19,30 +19,18 @@
 #include <string>
 #include <vector>
 
-namespace spherule {
-
-void PrintTo(const Stage2Method& phase, std::ostream* out) {
-  *out << phase.name;
-}
-
-}  // namespace spherule
-
 namespace spherule::test {
 namespace {
 
 using Eigen::Vector3d;
 
-class Stage2OfBaselines : public testing::TestWithParam<Stage2Method> {
- protected:
-  Fit fit_of(const TriangleMesh& mesh, const FitShares& shares = {},
-             CoverOptions options = {}) const {
-    Fit fitted;
-    fitted.external = externals_of(mesh, shares);
-    fitted.max_error = options.max_error = shares.max_error * diagonal_of(mesh);
-    fitted.cover = GetParam().run(mesh, fitted.external, options);
-    return fitted;
-  }
-};
+Fit fit_of(const TriangleMesh& mesh, const FitShares& shares = {}, CoverOptions options = {}) {
+  Fit fitted;
+  fitted.external = externals_of(mesh, shares);
+  fitted.max_error = options.max_error = shares.max_error * diagonal_of(mesh);
+  fitted.cover = medial_cover(mesh, fitted.external, options);
+  return fitted;
+}
 
 // G1 by the certificate, by samples and by a proof that shares no code with the fit.
 void expect_covered(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t seed,
@@ -71,7 +59,7 @@ void expect_tight(const TriangleMesh& mesh, const Fit& fitted, std::uint64_t see
   EXPECT_LE(*certificate.protrusion_over_simplified_max, fitted.max_error);
 }
 
-TEST_P(Stage2OfBaselines, CoversSevenShapesWithinTheError) {
+TEST(MedialCover, CoversSevenShapesWithinTheError) {
   std::vector<NamedMesh> shapes = effort(zoo_to_fit(), 3);
   shapes.resize(std::min<std::size_t>(shapes.size(), 7));  // the others take long
   for (const NamedMesh& named : shapes) {
@@ -84,7 +72,7 @@ TEST_P(Stage2OfBaselines, CoversSevenShapesWithinTheError) {
   }
 }
 
-TEST_P(Stage2OfBaselines, CoversHoweverExternalSpheresArePlacedAndWhateverTheScale) {
+TEST(MedialCover, CoversHoweverExternalSpheresArePlacedAndWhateverTheScale) {
   for (const ExternalPlacement placement : {ExternalPlacement::kRandom, ExternalPlacement::kNone}) {
     FitShares shares;
     shares.placement = placement;
@@ -111,7 +99,7 @@ TEST_P(Stage2OfBaselines, CoversHoweverExternalSpheresArePlacedAndWhateverTheSca
   expect_covered(grown, fit_of(grown, shares), 177);
 }
 
-TEST_P(Stage2OfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
+TEST(MedialCover, IsEqualInEveryRunOnAnyNumberOfThreads) {
   for (const char* name : effort(std::vector{"l-bracket", "cube"}, 1)) {
     const TriangleMesh mesh = mesh_named(name);
     const std::vector<Sphere> first = fit_of(mesh).cover.spheres;
@@ -123,7 +111,7 @@ TEST_P(Stage2OfBaselines, IsEqualInEveryRunOnAnyNumberOfThreads) {
   }
 }
 
-TEST_P(Stage2OfBaselines, EverySphereIsInflatedByTheSame) {
+TEST(MedialCover, EverySphereIsInflatedByTheSame) {
   const Fit fitted = fit_of(l_bracket());
   const SphereCover& cover = fitted.cover;
   EXPECT_GT(cover.inflation, 0.0);
@@ -135,7 +123,7 @@ TEST_P(Stage2OfBaselines, EverySphereIsInflatedByTheSame) {
   }
 }
 
-TEST_P(Stage2OfBaselines, NoSphereIsSmallerThanTheLeastRadius) {
+TEST(MedialCover, NoSphereIsSmallerThanTheLeastRadius) {
   const TriangleMesh mesh = l_bracket();
   CoverOptions options;
   options.min_radius = 2.5 * FitShares{}.max_error * diagonal_of(mesh);
@@ -144,12 +132,12 @@ TEST_P(Stage2OfBaselines, NoSphereIsSmallerThanTheLeastRadius) {
   expect_covered(mesh, fitted, 180);
 }
 
-TEST_P(Stage2OfBaselines, BadInputIsRefusedByName) {
+TEST(MedialCover, BadInputIsRefusedByName) {
   const ExternalSpheres external = externals_of(cube_mesh(), {});
   const auto refused = [&](const CoverOptions& options,
                            const TriangleMesh& mesh = cube_mesh()) -> std::string {
     try {
-      GetParam().run(mesh, external, options);
+      medial_cover(mesh, external, options);
     } catch (const Error& error) {
       return error.subject();
     }
@@ -171,59 +159,17 @@ TEST_P(Stage2OfBaselines, BadInputIsRefusedByName) {
 }
 
 // What simplify() promises of its own stage 2 methods: the certificate, the record, levels.
-TEST_P(Stage2OfBaselines, StandsInSimplify) {
+TEST(MedialCover, StandsInSimplify) {
   const TriangleMesh mesh = l_bracket();
   const double max_error = 0.07 * diagonal_of(mesh);
   SimplifyOptions options{.max_error = max_error, .levels = {max_error, 3.0 * max_error}};
-  options.stage2_method = GetParam();
+  options.stage2_method = Stage2Method{"medial", medial_cover};
   const Simplification result = simplify(mesh, options);
   EXPECT_EQ(broken_promises(result), "");
-  EXPECT_EQ(std::get<std::string>(option_record(result.options, 1.0).at("method")),
-            GetParam().name);
+  EXPECT_EQ(std::get<std::string>(option_record(result.options, 1.0).at("method")), "medial");
   ASSERT_EQ(result.levels.size(), 1U);
   EXPECT_LE(result.levels[0].protrusion, 3.0 * max_error);
   EXPECT_LT(result.levels[0].spheres.spheres.size(), result.cover.spheres.size());
-}
-
-INSTANTIATE_TEST_SUITE_P(Phases, Stage2OfBaselines,
-                         testing::Values(Stage2Method{"medial", medial_cover},
-                                         Stage2Method{"packing", packing_cover}),
-                         [](const auto& tested) { return tested.param.name; });
-
-TEST(PackingCover, TheLargestInscribedSphereComesFirst) {
-  const TriangleMesh mesh = box_mesh({0, 0, 0}, {1.0, 1.2, 1.4});
-  const ExternalSpheres external = externals_of(mesh, {});
-  const SphereCover packed = packing_cover(mesh, external, {.max_error = 0.05});
-  const std::vector<Sphere>& spheres = packed.spheres_before_inflation;
-  ASSERT_GT(spheres.size(), 20U);
-  // No larger one fits between the faces that are 1 apart; E tells how closely it is found.
-  EXPECT_NEAR(spheres.front().radius, 0.5, 0.005);
-  // By size, as long as no centre is held.
-  std::size_t placed = 1;
-  while (placed < spheres.size() && spheres[placed].radius <= spheres[placed - 1].radius &&
-         gap_to_spheres(spheres[placed].center, std::span(spheres).first(placed)) >= 0.0L) {
-    ++placed;
-  }
-  EXPECT_GE(placed, 8U);
-}
-
-TEST(PackingCover, ThePackingLiesInTheSolid) {
-  for (const NamedMesh& named : effort(zoo_to_fit(), 3)) {
-    SCOPED_TRACE(named.name);
-    const double max_error = FitShares{}.max_error * diagonal_of(named.mesh);
-    const ExternalSpheres external = externals_of(named.mesh, {});
-    const SphereCover packed = packing_cover(named.mesh, external, {.max_error = max_error});
-    EXPECT_LE(packed.inflation, max_error);
-    for (const Sphere& s : packed.spheres_before_inflation) {
-      // A point may stand where a sliver of S is too thin to be found, just outside of it.
-      const double off = (s.radius == 0.0 ? 1e-3 : 1e-14) * max_error;
-      ASSERT_GE(gap_to_spheres(s.center, external.spheres), s.radius - off);
-      for (int axis = 0; axis < 3; ++axis) {
-        ASSERT_GE(s.center[axis] - s.radius, external.box.min()[axis] - off);
-        ASSERT_LE(s.center[axis] + s.radius, external.box.max()[axis] + off);
-      }
-    }
-  }
 }
 
 }  // namespace
