@@ -253,7 +253,7 @@ std::vector<DistanceRow> study_distances(const Part& moving, const Part& standin
     curve.set_poses(poses.by_mesh[level], poses.by_spheres[level]);
     DistanceRow row;
     row.relative = kRelative[level];
-    row.distance = kRelative[level] * size;
+    row.distance_m = kRelative[level] * size;
     curve.time(options.rounds, row);
     curve.count(row);
     rows.push_back(row);

@@ -61,7 +61,7 @@ std::vector<SmallRow> study_small_environments(const Workload& workload,
 struct DistanceRow {
   double relative =
       0.0;  // distance / size; size: the mean of the diameters of the spheres around them
-  double distance = 0.0;  // metres
+  double distance_m = 0.0;
   // Booleans. FCL at a distance of the meshes, the fastest of its settings, alone and behind our
   // test of exact boxes; ours at that distance of the sphere sets, then in FCL's poses, where the
   // sphere sets are nearer or overlap, then there with contacts confirmed on the triangles.
