@@ -155,9 +155,9 @@ std::vector<Figure3Row> figure_3() {
     Figure3Row row{.min_external_diameter = 1e-3 * millimetres};
     ExternalOptions options{.min_external_diameter = row.min_external_diameter,
                             .max_error = kFigureError};
-    row.reachable = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
+    row.uncovered_reachable = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
     options.placement = ExternalPlacement::kRandom;
-    row.random = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
+    row.uncovered_random = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
     rows.push_back(row);
   }
   return rows;

@@ -24,6 +24,12 @@
 #include <vector>
 
 namespace spherule {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Figure3Row, min_external_diameter, uncovered_reachable,
+                                   uncovered_random)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TreeCost, nodes, depth, node_tests, ns)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TreeRow, method, leaves, collision_percent, own, ours)
+
 namespace {
 
 // What the paper says without a figure: a shape in spheres at equal E, with stage 1 and with a D so
@@ -34,12 +40,15 @@ struct ClaimRow {
   std::size_t triangles = 0;
   double max_error = 0.0;
   double min_external_diameter = 0.0;  // with stage 1
-  std::size_t with_stage1 = 0;         // spheres
-  std::size_t without_stage1 = 0;
+  std::size_t spheres_with_stage1 = 0;
+  std::size_t spheres_without_stage1 = 0;
   // A rod 20 mm across at a hundredth of the size from it: time of the fastest FCL setting on the
   // meshes over ours on the spheres with stage 1.
-  double ratio = 0.0;
+  double fcl_over_spheres = 0.0;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimRow, shape, holes, triangles, max_error,
+                                   min_external_diameter, spheres_with_stage1,
+                                   spheres_without_stage1, fcl_over_spheres)
 
 constexpr double kError = 0.003;
 constexpr double kExternal = 4.0 * kError;  // the default of `fit`
@@ -71,7 +80,9 @@ ClaimRow row(const std::string& shape, int holes, const TriangleMesh& mesh, cons
                with.tree->spheres().size(),
                without.tree->spheres().size()};
   for (const DistanceRow& at : study_distances(rod, with, {.rounds = 3})) {
-    if (at.relative == kRelativeDistance) row.ratio = at.fcl_collide_ns / at.collides_same_poses_ns;
+    if (at.relative == kRelativeDistance) {
+      row.fcl_over_spheres = at.fcl_collide_ns / at.collides_same_poses_ns;
+    }
   }
   return row;
 }
@@ -106,9 +117,10 @@ void print_claims(const std::vector<ClaimRow>& rows) {
               "share", "FCL / ours");
   for (const ClaimRow& row : rows) {
     std::printf("%-14s %6d %10zu %8zu %8zu %6.2f %12.1f\n", row.shape.c_str(), row.holes,
-                row.triangles, row.with_stage1, row.without_stage1,
-                static_cast<double>(row.with_stage1) / static_cast<double>(row.without_stage1),
-                row.ratio);
+                row.triangles, row.spheres_with_stage1, row.spheres_without_stage1,
+                static_cast<double>(row.spheres_with_stage1) /
+                    static_cast<double>(row.spheres_without_stage1),
+                row.fcl_over_spheres);
   }
 }
 
@@ -192,23 +204,6 @@ Json figure(const std::vector<FitCourse>& courses, double CoverHistoryEntry::*be
   return json;
 }
 
-Json to_json(const ClaimRow& row) {
-  return {{"shape", row.shape},
-          {"holes", row.holes},
-          {"triangles", row.triangles},
-          {"max_error", row.max_error},
-          {"min_external_diameter", row.min_external_diameter},
-          {"spheres_with_stage1", row.with_stage1},
-          {"spheres_without_stage1", row.without_stage1},
-          {"fcl_over_spheres", row.ratio}};
-}
-
-Json to_json(const Figure3Row& row) {
-  return {{"min_external_diameter", row.min_external_diameter},
-          {"uncovered_reachable", row.reachable},
-          {"uncovered_random", row.random}};
-}
-
 Json to_json(const Figure2& figure) {
   Json json = {{"max_error", figure.max_error},
                {"min_external_diameter", figure.min_external_diameter},
@@ -237,21 +232,6 @@ Json to_json(const CountRow& row) {
   return json;
 }
 
-Json to_json(const TreeCost& cost) {
-  return {{"nodes", cost.nodes},
-          {"depth", cost.depth},
-          {"node_tests", cost.node_tests},
-          {"ns", cost.ns}};
-}
-
-Json to_json(const TreeRow& row) {
-  return {{"method", row.method},
-          {"leaves", row.leaves},
-          {"collision_percent", row.collision_percent},
-          {"own", to_json(row.own)},
-          {"ours", to_json(row.ours)}};
-}
-
 template <class Row>
 Json list(const std::vector<Row>& rows) {
   Json json = Json::array();
@@ -267,13 +247,13 @@ void write_paper(const PaperResults& results, const std::filesystem::path& folde
       {"table1", list(results.table1)},
       {"figures",
        {{"2", to_json(results.figure_2)},
-        {"3", list(results.figure_3)},
+        {"3", nlohmann::json(results.figure_3)},
         {"6", figure(results.courses, &Entry::surface_error_before, &Entry::surface_error_after)},
         {"7", figure(results.courses, &Entry::coverage_before, &Entry::coverage_after)},
         {"8", figure(results.courses, &Entry::excess_before, &Entry::excess_after)}}},
-      {"claims", list(results.claims)},
+      {"claims", nlohmann::json(results.claims)},
       {"counts", list(results.counts)},
-      {"trees", list(results.trees)}};
+      {"trees", nlohmann::json(results.trees)}};
   write_file_atomically(folder / "paper.json", json.dump(1) + "\n");
 }
 

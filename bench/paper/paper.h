@@ -184,8 +184,8 @@ inline constexpr double kPaperVoxel = 0.005;
 
 struct Figure3Row {
   double min_external_diameter = 0.0;
-  double reachable = 0.0;  // share of the box that is not covered, by placement
-  double random = 0.0;
+  double uncovered_reachable = 0.0;  // share of the box, by placement
+  double uncovered_random = 0.0;
 };
 // The pipe's box as D grows from a third to more than the bore.
 std::vector<Figure3Row> figure_3();
