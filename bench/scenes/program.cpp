@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scenes/program.h"
-
 #include "base/error.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "robot/model/kinematics.h"
 
 #include <Eigen/Cholesky>

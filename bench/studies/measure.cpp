@@ -2,7 +2,7 @@
 #include "bench/studies/measure.h"
 
 #include "base/error.h"
-#include "bench/scenes/program.h"
+#include "bench/scenes/work_cell.h"
 #include "spheretree/build.h"
 
 #include <algorithm>

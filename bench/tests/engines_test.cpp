@@ -3,7 +3,7 @@
 #include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/fcl_mesh_checker.h"
 #include "bench/checkers/workload.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "bench/studies/measure.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"

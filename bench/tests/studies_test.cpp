@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "bench/studies/refined_cover.h"
 #include "spheretree/build.h"
 #include "tests/support/fcl_solid.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// The paper's work cell: its models, and the weld program.
+
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
 #include "robot/model/robot_model.h"
@@ -8,6 +10,9 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace spherule {
 
@@ -71,5 +76,34 @@ Pose link6_from_flange();
 // with ribs, flanges and screw holes as closed shells that overlap, of about the size of the real
 // ones. 6,825 triangles in all, as the robot of the paper has.
 std::array<TriangleMesh, kJoints + 1> make_robot_links();
+
+// Joint positions are multiples of 2^-20 radians (one micrometre at a metre's reach): rounding
+// hides what the library's sine and cosine do in their last bits, so that every machine gets the
+// same.
+ArmPositions on_joint_grid(const ArmPositions& positions);
+
+inline constexpr std::size_t kProgramSize = 15178;  // collision checks of the paper's experiment
+
+// Where table and workpiece stand in the robot's base frame.
+Pose world_from_table();
+Pose world_from_workpiece();
+
+struct Program {
+  std::vector<ArmPositions> configurations;
+  // 1 for those in which the wire is at the metal, on a pass: the paper's critical section.
+  std::vector<std::uint8_t> is_critical;
+};
+
+// The weld program of the work cell, in the order in which the robot runs it: from home over the
+// workpiece, down to a seam, along it a few millimetres off with weave and tilt, up and home again,
+// for passes over the joint's seams, along the pipes and around their rims. In places the wire is
+// pushed on to the metal (tack points); between some passes the torch is taken to a station behind
+// the fixture post by a move that does not mind the post, so that forearm and wrist hit it.
+// Continuous, within the joint limits, the same numbers on every machine (see on_joint_grid()).
+// Throws Error if a target is out of reach.
+Program make_program(const Pose& flange_from_wire);
+
+// The same configurations in an order without coherence (seeded, the same on every machine).
+std::vector<ArmPositions> shuffled(std::vector<ArmPositions> program, std::uint64_t seed);
 
 }  // namespace spherule
