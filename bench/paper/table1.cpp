@@ -7,12 +7,10 @@
 #include "bench/checkers/workload.h"
 #include "bench/paper/paper.h"
 #include "bench/studies/measure.h"
-#include "geometry/mesh_report.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <span>
