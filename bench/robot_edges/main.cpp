@@ -464,7 +464,7 @@ void Counts::print_times(const char* name) const {
 
 constexpr std::size_t kEdges = 2000;
 constexpr std::size_t kSteps = 16;  // of an edge, as a path
-constexpr int kRounds = 9;
+constexpr int kCostRounds = 9;
 
 // The same questions for every checker: edges that all find free, configurations on them and
 // anywhere.
@@ -508,7 +508,7 @@ std::vector<Costs> costs_of(std::span<const RobotChecker> checkers, const Questi
   std::vector<RobotChecker::Scratch> scratches;
   for (const RobotChecker& checker : checkers) scratches.emplace_back(checker);
   std::vector<std::vector<double>> path(checkers.size()), anywhere(path), edges(path);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kCostRounds; ++round) {
     for (std::size_t i = 0; i < checkers.size(); ++i) {
       const auto query = [&](std::vector<double>& times, const auto& all, auto one) {
         const auto start = Clock::now();

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "bench/baseline/medial_spheres.h"
 #include "bench/baseline/sphere_methods.h"
+#include "simplifier/option_record.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <ostream>
 #include <string>
 #include <vector>
 
