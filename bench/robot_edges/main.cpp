@@ -59,16 +59,11 @@ struct ConfigurationRow {
 
   void take(double ns) { rounds_ns.push_back(ns); }
   double median_ns() const;
-  bool is_asked() const { return !rounds_ns.empty(); }
 };
 
 struct ConfigurationTimes {
   explicit ConfigurationTimes(std::size_t count)
-      : single{std::vector<std::uint8_t>(count)},
-        batch(single),
-        confirmed(single),
-        flat(single),
-        truth(count) {}
+      : single{std::vector<std::uint8_t>(count)}, batch(single), confirmed(single), truth(count) {}
 
   // Of another library.
   struct Peer {
@@ -76,7 +71,7 @@ struct ConfigurationTimes {
     ConfigurationRow row;
   };
 
-  ConfigurationRow single, batch, confirmed, flat;
+  ConfigurationRow single, batch, confirmed;
   std::vector<Peer> peers{};
   std::vector<std::uint8_t> truth;  // 1: free, by FCL and by points in solids
 
@@ -152,8 +147,6 @@ class Course {
   RobotChecker::Scratch scratch_;
   RobotChecker confirmed_;
   RobotChecker::Scratch confirmed_scratch_;
-  FlatArm flat_;
-  bool has_mesh_;
   FclArm obbrss_;
   FclArm obb_;
   std::vector<std::unique_ptr<ArmChecker>> bullet_{};
@@ -206,8 +199,6 @@ Course::Course(const Arm& arm, const AllowedCollisions& allowed, const ArmScene&
       scratch_(checker_),
       confirmed_(robot_scene(arm, allowed, scene).snapshot({.meshes = arm.covers})),
       confirmed_scratch_(confirmed_),
-      flat_(arm, allowed, scene),
-      has_mesh_(!scene.mesh.triangles.empty()),
       obbrss_(arm, allowed, scene, FclVolume::kObbRss),
       obb_(arm, allowed, scene, FclVolume::kObb),
       peers_{&obbrss_, &obb_} {
@@ -309,7 +300,6 @@ ConfigurationTimes Course::measure_configurations(std::size_t count, bool is_pat
     times.batch.take(nanoseconds(Clock::now() - start));
     time_each(times.confirmed,
               [&](auto q) { return confirmed_.check_config(q, confirmed_scratch_); });
-    if (!has_mesh_) time_each(times.flat, [&](auto q) { return !flat_.collides(q); });
     for (std::size_t k = 0; k < peers_.size(); ++k) {
       time_each(times.peers[k].row, [&](auto q) { return !peers_[k]->collides(q); });
     }
@@ -326,15 +316,14 @@ double ConfigurationRow::median_ns() const {
 
 void ConfigurationTimes::print_head() const {
   std::printf(
-      "\none configuration: ns in single calls; times as long as that: in batches, confirmed, the "
-      "flat\n"
-      "scan, other libraries; of all configurations in contact by FCL or with an obstacle inside "
+      "\none configuration: ns in single calls; times as long as that: in batches, confirmed, "
+      "other libraries; of all configurations in contact by FCL or with an obstacle inside "
       "of a link, missed / extra\n"
-      "| scene, order | ns | many | confirmed | flat |");
+      "| scene, order | ns | many | confirmed |");
   for (const Peer& peer : peers) std::printf(" %s |", peer.name.c_str());
   std::printf(" contact | missed / extra | confirmed |");
   for (const Peer& peer : peers) std::printf(" %s |", peer.name.c_str());
-  std::printf("\n|---|---|---|---|---|---|---|---|");
+  std::printf("\n|---|---|---|---|---|---|---|");
   for (std::size_t i = 0; i < 2 * peers.size(); ++i) std::printf("---|");
   std::printf("\n");
 }
@@ -343,11 +332,7 @@ void ConfigurationTimes::print(const char* name) const {
   const auto count = static_cast<double>(single.free.size());
   const double own = single.median_ns();
   const auto print_time = [&](const ConfigurationRow& row) {
-    if (row.is_asked()) {
-      std::printf(" %5.2f |", row.median_ns() / own);
-    } else {
-      std::printf(" - |");
-    }
+    std::printf(" %5.2f |", row.median_ns() / own);
   };
   const auto print_verdicts = [&](const ConfigurationRow& row) {
     std::size_t missed = 0, extra = 0;
@@ -358,7 +343,7 @@ void ConfigurationTimes::print(const char* name) const {
     std::printf(" %zu / %zu |", missed, extra);
   };
   std::printf("| %-16s | %6.0f |", name, own / count);
-  for (const ConfigurationRow* row : {&batch, &confirmed, &flat}) print_time(*row);
+  for (const ConfigurationRow* row : {&batch, &confirmed}) print_time(*row);
   for (const Peer& peer : peers) print_time(peer.row);
   std::printf(" %5zu |", static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 0)));
   for (const ConfigurationRow* row : {&single, &confirmed}) print_verdicts(*row);

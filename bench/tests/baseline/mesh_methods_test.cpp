@@ -330,7 +330,7 @@ TEST(Decimation, ReachesTheTargetWithVerticesOfTheOriginal) {
   EXPECT_LE(half.mesh.triangles.size(), mesh.triangles.size() / 2);
   EXPECT_GE(half.mesh.triangles.size(), mesh.triangles.size() / 2 - 4);
   for (const Eigen::Vector3d& v : half.mesh.vertices) {
-    EXPECT_EQ(std::count(mesh.vertices.begin(), mesh.vertices.end(), v), 1);
+    EXPECT_GE(std::count(mesh.vertices.begin(), mesh.vertices.end(), v), 1);
   }
   EXPECT_GT(half.estimated_error, 0.0);
   EXPECT_GT(half.deviation.loss.lower, 0.0);  // a bulge was cut off: not conservative
