@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/convex_decomposition.h"
-
 #include "base/error.h"
-#include "bench/baseline/convex_hull.h"
+#include "bench/baseline/mesh_methods.h"
 #include "geometry/mesh_report.h"
 #include "geometry/triangle_mesh.h"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/convex_hull.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
+#include "bench/baseline/mesh_methods.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -264,13 +263,6 @@ ConvexHull convex_hull(const TriangleMesh& mesh, const ConvexHullOptions& option
     for (const Vector3d& corner : corners_of(mesh, t)) used.push_back(corner);
   }
   return convex_hull(used, {options.padding + mesh.vertex_error, options.max_expansion}, "mesh");
-}
-
-std::vector<int> polygon_list(const TriangleMesh& mesh) {
-  std::vector<int> list;
-  list.reserve(4 * mesh.triangles.size());
-  for (const Eigen::Vector3i& t : mesh.triangles) list.insert(list.end(), {3, t[0], t[1], t[2]});
-  return list;
 }
 
 }  // namespace spherule

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/decimation.h"
-
 #include "base/error.h"
+#include "bench/baseline/mesh_methods.h"
 
 #include <Eigen/Geometry>
 

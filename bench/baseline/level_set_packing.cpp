@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/level_set_packing.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
-#include "bench/baseline/mesh_probe.h"
+#include "bench/baseline/medial_spheres.h"
+#include "bench/baseline/sphere_methods.h"
 #include "geometry/triangle_mesh.h"
 
 #include <algorithm>

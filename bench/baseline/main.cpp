@@ -2,16 +2,8 @@
 // What the methods of comparison make of a mesh, as files: `spherule_baseline METHOD MESH -o OUT`.
 // Lengths are in the unit of the mesh. Prints what was measured or proved as JSON.
 #include "base/files.h"
-#include "bench/baseline/convex_decomposition.h"
-#include "bench/baseline/convex_hull.h"
-#include "bench/baseline/decimation.h"
-#include "bench/baseline/level_set_packing.h"
-#include "bench/baseline/made_conservative.h"
-#include "bench/baseline/medial_axis.h"
-#include "bench/baseline/medial_cover.h"
-#include "bench/baseline/octree_spheres.h"
-#include "bench/baseline/packing_cover.h"
-#include "bench/baseline/voxelisation.h"
+#include "bench/baseline/mesh_methods.h"
+#include "bench/baseline/sphere_methods.h"
 #include "io/mesh_io.h"
 #include "io/sphere_file.h"
 #include "simplifier/simplify.h"
@@ -249,10 +241,6 @@ const std::vector<Method> kMethods = {
     {"cover-medial", "Stage 2 of a fit by AMAA, after stage 1; proved", add_fit_options,
      [](const TriangleMesh& mesh, const Arguments& arguments) {
        return cover_by({"medial", medial_cover}, mesh, arguments);
-     }},
-    {"cover-packing", "Stage 2 of a fit by packing, largest sphere first, after stage 1; proved",
-     add_fit_options, [](const TriangleMesh& mesh, const Arguments& arguments) {
-       return cover_by({"packing", packing_cover}, mesh, arguments);
      }}};
 
 int run(int count, char** values) {

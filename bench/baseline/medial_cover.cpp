@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/medial_cover.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
-#include "bench/baseline/best_reduction.h"
-#include "bench/baseline/made_conservative.h"
 #include "bench/baseline/medial_spheres.h"
-#include "bench/baseline/mesh_probe.h"
-#include "bench/baseline/sphere_reduction.h"
+#include "bench/baseline/sphere_methods.h"
 #include "simplifier/proof/protrusion.h"
+#include "simplifier/solid/cells.h"
+#include "simplifier/stage2/cover_moves.h"
+#include "simplifier/stage2/cover_problem.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
+#include "simplifier/stage2/solid_cells.h"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +20,85 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
+
+namespace spherule::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+// Shares of E: half diagonal of cells; how far apart points on edges are, and how deep inside of S
+// at most.
+constexpr double kCells = 0.4;
+constexpr double kEdgeSpacing = 0.4;
+constexpr double kMostDepth = 0.2;
+
+constexpr double kMostEdgePoints = 1e6;
+
+const TriangleMesh& checked(const TriangleMesh& mesh, const CoverOptions& options,
+                            const std::string& method) {
+  validate(mesh, "mesh");
+  check_options(options);
+  refuse_error_zones(options, method);
+  return mesh;
+}
+
+const Clearance& checked(const Clearance& clearance, double max_error) {
+  check_resolved(clearance, max_error, kErrorTolerance);
+  return clearance;
+}
+
+// The simplified solid S.
+struct SimplifiedSolid {
+  // Throws Error for a mesh, options and an E that cover() would refuse, and for zones of an E of
+  // their own in the name of the method.
+  SimplifiedSolid(const TriangleMesh& mesh, const ExternalSpheres& external,
+                  const CoverOptions& options, const std::string& method);
+  SimplifiedSolid(const SimplifiedSolid&) = delete;
+  SimplifiedSolid& operator=(const SimplifiedSolid&) = delete;
+
+  // Points of S, up to rounding, that a cover is made for: one on the boundary in every cell that
+  // this crosses, one in the middle of every other, and, since they stick out first, corners and
+  // points of the edges of the mesh where they lie on the boundary. (Ridges where external spheres
+  // meet elsewhere are left to the proof: what leaks there becomes a sample, too.) At least one.
+  std::vector<Eigen::Vector3d> samples(const TriangleMesh& mesh) const;
+
+  double max_error;  // E
+  MeshDistance distance;
+  Clearance clearance;
+  LocalError everywhere;  // E
+  SolidCells cells;
+};
+
+SimplifiedSolid::SimplifiedSolid(const TriangleMesh& mesh, const ExternalSpheres& external,
+                                 const CoverOptions& options, const std::string& method)
+    : max_error(options.max_error),
+      distance(checked(mesh, options, method)),
+      clearance(external),
+      everywhere(max_error, {}),
+      cells(checked(clearance, max_error), distance, everywhere, max_error, kCells) {}
+
+std::vector<Vector3d> SimplifiedSolid::samples(const TriangleMesh& mesh) const {
+  std::vector<Vector3d> points = cells.sample();
+  const double spacing = kEdgeSpacing * max_error;
+  const double count = std::clamp(total_area(mesh) / (spacing * spacing), 1.0, kMostEdgePoints);
+  std::set<Cube> taken;
+  for (const Vector3d& p : edge_samples(mesh, static_cast<std::size_t>(count))) {
+    if (!taken.insert(cube_of(p, spacing)).second) continue;
+    const ClearanceAt at = clearance(p, max_error);
+    if (at.lower <= kMostDepth * max_error) points.push_back(p);
+  }
+  if (points.empty()) {
+    points.push_back(mesh.vertices[static_cast<std::size_t>(mesh.triangles.front()[0])]);
+  }
+  return points;
+}
+
+}  // namespace
+}  // namespace spherule::internal
 
 namespace spherule {
 namespace {

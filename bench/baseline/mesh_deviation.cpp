@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/mesh_deviation.h"
-
 #include "base/error.h"
+#include "bench/baseline/mesh_methods.h"
 #include "geometry/mesh_distance.h"
 #include "geometry/point_triangle.h"
 #include "geometry/shells.h"

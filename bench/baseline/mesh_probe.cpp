@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/mesh_probe.h"
-
 #include "base/error.h"
 #include "base/random.h"
+#include "bench/baseline/medial_spheres.h"
 #include "geometry/median_split.h"
 #include "geometry/surface_sampling.h"
 #include "geometry/triangles.h"

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/octree_spheres.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
 #include "bench/baseline/cell_octree.h"
-#include "bench/baseline/made_conservative.h"
+#include "bench/baseline/sphere_methods.h"
 #include "geometry/enclosing_sphere.h"
 #include "geometry/mesh_distance.h"
 #include "simplifier/stage2/cover_moves.h"

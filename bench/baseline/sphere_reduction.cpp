@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/sphere_reduction.h"
-
 #include "base/rounding.h"
 #include "base/threads.h"
+#include "bench/baseline/medial_spheres.h"
+#include "geometry/enclosing_sphere.h"
 #include "geometry/weld.h"
 #include "simplifier/stage2/search/cover_search.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <queue>
@@ -54,14 +55,9 @@ std::vector<Nearest> nearest_spheres(const ReductionTask& task, std::size_t coun
   return nearest;
 }
 
-}  // namespace
-
-double largest_protrusion(std::span<const FittedSphere> spheres) {
-  double largest = 0.0;
-  for (const FittedSphere& s : spheres) largest = std::max(largest, s.protrusion());
-  return largest;
-}
-
+// What the reductions start from: each point goes to the medial sphere that holds it deepest, or
+// that has to grow least for it, if that is no more than max_inflation. Spheres without points are
+// left out.
 std::vector<FittedSphere> assign_points(const ReductionTask& task) {
   const auto sphere_at = [&](std::size_t i) -> const Sphere& { return task.spheres[i].sphere; };
   const auto nearest = nearest_spheres(task, task.spheres.size(), sphere_at);
@@ -82,6 +78,36 @@ std::vector<FittedSphere> assign_points(const ReductionTask& task) {
   std::erase_if(all, [](const FittedSphere& s) { return s.points.empty(); });
   return all;
 }
+
+// The spheres of a reduction that are still there, and which are neighbours. Merging and bursting
+// work on it.
+class ReductionGraph {
+ public:
+  // The spheres of assign_points, neighbours where both are among the three nearest of some point.
+  explicit ReductionGraph(const ReductionTask& task);
+
+  std::size_t size() const { return nodes_.size(); }  // of removed spheres too
+  std::size_t live_count() const { return live_count_; }
+  bool is_live(std::size_t i) const { return live_[i]; }
+  const FittedSphere& operator[](std::size_t i) const { return nodes_[i]; }
+  FittedSphere& operator[](std::size_t i) { return nodes_[i]; }
+  const std::set<std::uint32_t>& neighbours(std::size_t i) const { return links_[i]; }
+  std::vector<std::uint32_t> live() const;  // ascending
+
+  std::uint32_t add(FittedSphere sphere);
+  // Takes a sphere out; its neighbours become neighbours of `heir`.
+  void remove(std::uint32_t i, std::uint32_t heir);
+  // Makes every sphere a neighbour of those nearest to it, where nothing else joins what is left.
+  void link_nearest();
+
+ private:
+  void link(std::uint32_t a, std::uint32_t b);
+
+  std::vector<FittedSphere> nodes_;
+  std::vector<std::set<std::uint32_t>> links_;
+  std::vector<bool> live_;
+  std::size_t live_count_ = 0;
+};
 
 ReductionGraph::ReductionGraph(const ReductionTask& task)
     : nodes_(assign_points(task)),
@@ -146,49 +172,40 @@ void ReductionGraph::link_nearest() {
   }
 }
 
-namespace {
-
-using Eigen::Vector3d;
-
-struct Bursting {
-  double protrusion = 0.0;  // largest of the heirs
-  std::uint32_t sphere = 0;
-  std::uint32_t version = 0;
+// What would make one sphere fewer.
+struct Step {
+  double protrusion = 0.0;   // the largest of the spheres that it makes
+  std::uint32_t first = 0;   // the sphere that goes
+  std::uint32_t second = 0;  // merging: the other one; bursting: the version of the first
+  Sphere sphere = {};        // merging: in the place of both
+  double clearance = 0.0;
 };
 
 struct ComesLater {
-  bool operator()(const Bursting& a, const Bursting& b) const {
-    return std::tie(a.protrusion, a.sphere) > std::tie(b.protrusion, b.sphere);
+  bool operator()(const Step& a, const Step& b) const {
+    return std::tie(a.protrusion, a.first, a.second) > std::tie(b.protrusion, b.first, b.second);
   }
 };
 
-// What a neighbour takes over.
-struct Inheritance {
-  double radius = 0.0;  // that it needs
-  std::vector<std::uint32_t> points;
-};
-
-class Burster {
+// Takes the step that protrudes least, again and again.
+class Reducer {
  public:
-  explicit Burster(const ReductionTask& task)
-      : task_(task), graph_(task), versions_(graph_.size(), 0) {
-    const std::vector<std::uint32_t> all = graph_.live();
-    evaluate({all.begin(), all.end()});
-  }
+  explicit Reducer(const ReductionTask& task) : task_(task), graph_(task) {}
+  virtual ~Reducer() = default;
 
   void run(const ReductionGoal& goal) {
     const std::size_t wanted = std::max<std::size_t>(1, goal.count);
     while (graph_.live_count() > wanted) {
-      if (!drop_stale()) {
+      while (!queue_.empty() && is_stale(queue_.top())) queue_.pop();
+      if (queue_.empty()) {
         graph_.link_nearest();
-        const std::vector<std::uint32_t> all = graph_.live();
-        evaluate({all.begin(), all.end()});
+        evaluate_all();
         continue;
       }
-      const Bursting next = queue_.top();
+      const Step next = queue_.top();
       if (goal.count == 0 && next.protrusion > goal.max_protrusion) return;
       queue_.pop();
-      apply(next.sphere);
+      apply(next);
     }
   }
 
@@ -198,7 +215,111 @@ class Burster {
     return spheres;
   }
 
+ protected:
+  virtual bool is_stale(const Step& step) const = 0;
+  virtual void evaluate_all() = 0;
+  virtual void apply(const Step& step) = 0;
+
+  const ReductionTask& task_;
+  ReductionGraph graph_;
+  std::priority_queue<Step, std::vector<Step>, ComesLater> queue_;
+};
+
+class Merger : public Reducer {
+ public:
+  explicit Merger(const ReductionTask& task) : Reducer(task) { Merger::evaluate_all(); }
+
+  std::vector<std::uint32_t> live() const { return graph_.live(); }
+  // The sphere that holds the points of sphere i now.
+  std::uint32_t current(std::uint32_t i) const {
+    while (graph_[i].merged_into >= 0) i = static_cast<std::uint32_t>(graph_[i].merged_into);
+    return i;
+  }
+
  private:
+  bool is_stale(const Step& step) const override {
+    return !graph_.is_live(step.first) || !graph_.is_live(step.second);
+  }
+
+  void evaluate_all() override {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const std::uint32_t i : graph_.live()) add_pairs(i, pairs, true);
+    evaluate(pairs);
+  }
+
+  // The pairs of sphere i with its neighbours; with `ascending` only those after it.
+  void add_pairs(std::uint32_t i, std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs,
+                 bool ascending) const {
+    for (const std::uint32_t j : graph_.neighbours(i)) {
+      if (!ascending || j > i) pairs.emplace_back(std::min(i, j), std::max(i, j));
+    }
+  }
+
+  Step merging(std::uint32_t i, std::uint32_t j) const {
+    const FittedSphere& a = graph_[i];
+    const FittedSphere& b = graph_[j];
+    std::vector<Vector3d> points;
+    points.reserve(a.points.size() + b.points.size());
+    for (const std::uint32_t p : a.points) points.push_back(task_.samples[p]);
+    for (const std::uint32_t p : b.points) points.push_back(task_.samples[p]);
+    const Sphere both[] = {a.sphere, b.sphere};
+    Step best;
+    for (const Sphere& sphere : {enclosing_sphere(std::span<const Vector3d>(points)),
+                                 enclosing_sphere(std::span<const Sphere>(both))}) {
+      const double clearance = task_.probe.clearance(sphere.center);
+      const double protrusion = sphere.radius - clearance;
+      const bool is_first = best.first == best.second;
+      if (is_first || protrusion < best.protrusion) best = {protrusion, i, j, sphere, clearance};
+    }
+    return best;
+  }
+
+  void evaluate(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+    std::vector<Step> found(pairs.size());
+    parallel_for(0, pairs.size(),
+                 [&](std::size_t k) { found[k] = merging(pairs[k].first, pairs[k].second); });
+    for (const Step& m : found) queue_.push(m);
+  }
+
+  void apply(const Step& m) override {
+    FittedSphere merged{m.sphere, m.clearance, {}, -1};
+    std::merge(graph_[m.first].points.begin(), graph_[m.first].points.end(),
+               graph_[m.second].points.begin(), graph_[m.second].points.end(),
+               std::back_inserter(merged.points));
+    const std::uint32_t heir = graph_.add(std::move(merged));
+    for (const std::uint32_t i : {m.first, m.second}) {
+      graph_.remove(i, heir);
+      graph_[i].merged_into = static_cast<std::int32_t>(heir);
+      graph_[i].points = {};
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    add_pairs(heir, pairs, false);
+    evaluate(pairs);
+  }
+};
+
+// What a neighbour takes over.
+struct Inheritance {
+  double radius = 0.0;  // that it needs
+  std::vector<std::uint32_t> points;
+};
+
+class Burster : public Reducer {
+ public:
+  explicit Burster(const ReductionTask& task) : Reducer(task), versions_(graph_.size(), 0) {
+    Burster::evaluate_all();
+  }
+
+ private:
+  bool is_stale(const Step& step) const override {
+    return !graph_.is_live(step.first) || versions_[step.first] != step.second;
+  }
+
+  void evaluate_all() override {
+    const std::vector<std::uint32_t> all = graph_.live();
+    evaluate({all.begin(), all.end()});
+  }
+
   std::map<std::uint32_t, Inheritance> heirs_of(std::uint32_t i) const {
     std::map<std::uint32_t, Inheritance> heirs;
     for (const std::uint32_t point : graph_[i].points) {
@@ -239,17 +360,8 @@ class Burster {
     }
   }
 
-  // False if nothing is left.
-  bool drop_stale() {
-    while (!queue_.empty()) {
-      const Bursting& top = queue_.top();
-      if (graph_.is_live(top.sphere) && versions_[top.sphere] == top.version) return true;
-      queue_.pop();
-    }
-    return false;
-  }
-
-  void apply(std::uint32_t i) {
+  void apply(const Step& step) override {
+    const std::uint32_t i = step.first;
     const std::map<std::uint32_t, Inheritance> heirs = heirs_of(i);
     const std::set<std::uint32_t> around = graph_.neighbours(i);
     std::uint32_t main_heir = heirs.begin()->first;
@@ -271,13 +383,34 @@ class Burster {
     evaluate(changed);
   }
 
-  const ReductionTask& task_;
-  ReductionGraph graph_;
   std::vector<std::uint32_t> versions_;
-  std::priority_queue<Bursting, std::vector<Bursting>, ComesLater> queue_;
 };
 
 }  // namespace
+
+std::vector<FittedSphere> merge(const ReductionTask& task, const ReductionGoal& goal) {
+  Merger merger(task);
+  merger.run(goal);
+  return merger.result();
+}
+
+std::vector<std::vector<FittedSphere>> merge_levels(const ReductionTask& task,
+                                                    std::span<const std::size_t> counts) {
+  Merger merger(task);
+  std::vector<std::vector<FittedSphere>> levels;
+  std::vector<std::uint32_t> before;
+  for (const std::size_t count : counts) {
+    merger.run({.count = count});
+    const std::vector<std::uint32_t> now = merger.live();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const auto place = std::lower_bound(now.begin(), now.end(), merger.current(before[i]));
+      levels.back()[i].merged_into = static_cast<std::int32_t>(place - now.begin());
+    }
+    levels.push_back(merger.result());
+    before = now;
+  }
+  return levels;
+}
 
 std::vector<FittedSphere> burst(const ReductionTask& task, const ReductionGoal& goal) {
   Burster burster(task);
@@ -286,8 +419,6 @@ std::vector<FittedSphere> burst(const ReductionTask& task, const ReductionGoal& 
 }
 
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr int kBisections = 12;  // of the stand-off distance
 // The stand-off distance is searched for with every so many-th point only, so that about these are
@@ -405,6 +536,50 @@ std::vector<FittedSphere> expand(const ReductionTask& task, const ReductionGoal&
     spheres = expander.at(stand_off);
   }
   return spheres;
+}
+
+double largest_protrusion(std::span<const FittedSphere> spheres) {
+  double largest = 0.0;
+  for (const FittedSphere& s : spheres) largest = std::max(largest, s.protrusion());
+  return largest;
+}
+
+namespace {
+
+// A radius that is the sum of a clearance and the wanted protrusion may be rounded up.
+constexpr double kRounding = 1e-9;
+
+}  // namespace
+
+bool is_better(const std::vector<FittedSphere>& a, const std::vector<FittedSphere>& b,
+               const ReductionGoal& goal) {
+  const std::pair<double, double> of_a(largest_protrusion(a), static_cast<double>(a.size()));
+  const std::pair<double, double> of_b(largest_protrusion(b), static_cast<double>(b.size()));
+  if (goal.count > 0) return of_a < of_b;
+  const double most = (1.0 + kRounding) * goal.max_protrusion;
+  const bool a_holds = of_a.first <= most;
+  const bool b_holds = of_b.first <= most;
+  if (a_holds != b_holds) return a_holds;
+  return a_holds ? of_a.second < of_b.second : of_a < of_b;
+}
+
+Reduced reduce(const ReductionTask& task, const ReductionGoal& goal, SphereReduction reduction) {
+  switch (reduction) {
+    case SphereReduction::kMerge:
+      return {reduction, merge(task, goal)};
+    case SphereReduction::kBurst:
+      return {reduction, burst(task, goal)};
+    case SphereReduction::kExpand:
+      return {reduction, expand(task, goal)};
+    case SphereReduction::kBest:
+      break;
+  }
+  Reduced best = reduce(task, goal, SphereReduction::kMerge);
+  for (const SphereReduction other : {SphereReduction::kBurst, SphereReduction::kExpand}) {
+    Reduced made = reduce(task, goal, other);
+    if (is_better(made.spheres, best.spheres, goal)) best = std::move(made);
+  }
+  return best;
 }
 
 }  // namespace spherule::internal

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/voronoi.h"
-
 #include "base/error.h"
+#include "bench/baseline/medial_spheres.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

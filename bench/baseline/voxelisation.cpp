@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/baseline/voxelisation.h"
-
 #include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "base/rounding.h"
 #include "bench/baseline/cell_octree.h"
-#include "bench/baseline/made_conservative.h"
+#include "bench/baseline/sphere_methods.h"
 #include "geometry/triangle_mesh.h"
 #include "simplifier/stage2/cover_moves.h"
 

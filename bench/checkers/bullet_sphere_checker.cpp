@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/bullet_sphere_checker.h"
-
 #include "bench/checkers/bullet_pair_test.h"
-#include "bench/checkers/tree_checker.h"
+#include "bench/checkers/sphere_checkers.h"
 
 #include <bullet/btBulletCollisionCommon.h>
 #include <cmath>

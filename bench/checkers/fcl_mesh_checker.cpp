@@ -1,33 +1,69 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/checkers/fcl_mesh_checker.h"
 
+#include "base/error.h"
+#include "bench/checkers/sphere_checkers.h"
 #include "tests/support/fcl_models.h"
+#include "tests/support/mesh_facts.h"
+#include "tests/support/solids.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
 
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace spherule {
 namespace {
 
+// Of one obstacle, what stands in the place of its mesh.
+struct ConvexParts {
+  std::size_t obstacle;
+  const std::vector<TriangleMesh>& parts;
+};
+
+std::shared_ptr<fcl::Convex<double>> convex(const TriangleMesh& part) {
+  auto vertices =
+      std::make_shared<std::vector<fcl::Vector3d>>(part.vertices.begin(), part.vertices.end());
+  auto faces = std::make_shared<std::vector<int>>();  // each its number of corners and then these
+  for (const Eigen::Vector3i& t : part.triangles) {
+    faces->insert(faces->end(), {3, t[0], t[1], t[2]});
+  }
+  return std::make_shared<fcl::Convex<double>>(
+      std::move(vertices), static_cast<int>(part.triangles.size()), std::move(faces));
+}
+
 template <class Volume>
 class BoxesThenMeshes : public SingleChecker {
  public:
-  explicit BoxesThenMeshes(const Workload& workload) : SingleChecker(workload.robot) {
-    for (const Obstacle& obstacle : workload.obstacles) {
-      const auto pose = fcl_pose<S>(obstacle.world_from_part);
-      const FclModel<Volume> model(obstacle.part.mesh);
-      obstacles_.push_back({model, pose, model.world_box(pose)});
+  explicit BoxesThenMeshes(const Workload& workload, const ConvexParts* convex_parts = nullptr)
+      : SingleChecker(workload.robot) {
+    for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
+      const Part& part = workload.obstacles[i].part;
+      const auto pose = fcl_pose<S>(workload.obstacles[i].world_from_part);
+      if constexpr (std::is_same_v<S, double>) {
+        if (convex_parts != nullptr && convex_parts->obstacle == i) {
+          for (const TriangleMesh& mesh : convex_parts->parts) {
+            const auto placed_part = placed(mesh, pose.linear(), pose.translation());
+            static_.push_back({convex(mesh), pose, bounding_box(placed_part), i});
+          }
+          continue;
+        }
+      }
+      const FclModel<Volume> model(part.mesh);
+      static_.push_back({model.geometry, pose, model.world_box(pose), i});
     }
     for (const Body& body : workload.bodies) {
       bodies_.push_back(
           {FclModel<Volume>(body.part.mesh), static_cast<std::size_t>(body.link), {}});
-      for (std::size_t i = 0; i < workload.obstacles.size(); ++i) {
-        if (is_tested(body, workload.obstacles[i])) bodies_.back().against.push_back(i);
+      for (std::size_t i = 0; i < static_.size(); ++i) {
+        if (is_tested(body, workload.obstacles[static_[i].obstacle])) {
+          bodies_.back().against.push_back(i);
+        }
       }
     }
   }
@@ -38,10 +74,9 @@ class BoxesThenMeshes : public SingleChecker {
       const auto pose = fcl_pose<S>(world_from_link[body.link]);
       const auto box = body.model.world_box(pose);
       for (const std::size_t i : body.against) {
-        const Static& obstacle = obstacles_[i];
-        if (box.intersects(obstacle.box) &&
-            fcl_meshes_touch<Volume>(*body.model.geometry, pose, *obstacle.model.geometry,
-                                     obstacle.pose)) {
+        const Static& other = static_[i];
+        if (box.intersects(other.box) &&
+            fcl_meshes_touch<Volume>(*body.model.geometry, pose, *other.geometry, other.pose)) {
           return true;
         }
       }
@@ -52,16 +87,17 @@ class BoxesThenMeshes : public SingleChecker {
  private:
   using S = typename Volume::S;
   struct Static {
-    FclModel<Volume> model;
+    std::shared_ptr<const fcl::CollisionGeometry<S>> geometry;
     fcl::Transform3<S> pose;
     Eigen::AlignedBox<S, 3> box;
+    std::size_t obstacle;
   };
   struct Moving {
     FclModel<Volume> model;
     std::size_t link;
     std::vector<std::size_t> against;
   };
-  std::vector<Static> obstacles_;
+  std::vector<Static> static_;
   std::vector<Moving> bodies_;
 };
 
@@ -165,6 +201,13 @@ std::unique_ptr<Checker> make_fcl_mesh_checker(const Workload& workload,
   }
   return is_double ? make<fcl::OBBRSS<double>>(workload, setting.front)
                    : make<fcl::OBBRSS<float>>(workload, setting.front);
+}
+
+std::unique_ptr<Checker> make_fcl_convex_checker(const Workload& workload, std::size_t obstacle,
+                                                 const std::vector<TriangleMesh>& parts) {
+  if (parts.empty()) throw Error(workload.name, "no convex parts");
+  const ConvexParts convex_parts{obstacle, parts};
+  return std::make_unique<BoxesThenMeshes<fcl::OBBRSS<double>>>(workload, &convex_parts);
 }
 
 namespace {

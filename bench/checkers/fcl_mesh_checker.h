@@ -32,6 +32,13 @@ std::vector<FclMeshSetting> all_fcl_mesh_settings();
 std::unique_ptr<Checker> make_fcl_mesh_checker(const Workload& workload,
                                                const FclMeshSetting& setting);
 
+// FCL on convex parts (GJK by libccd) in place of one obstacle's mesh: the bodies and all other
+// obstacles stay meshes, in hierarchies of OBBRSS in double behind exact axis-parallel boxes. The
+// parts are closed, convex, with outward triangles, in the obstacle's frame. Throws Error for no
+// parts.
+std::unique_ptr<Checker> make_fcl_convex_checker(const Workload& workload, std::size_t obstacle,
+                                                 const std::vector<TriangleMesh>& parts);
+
 // FCL's queries of two meshes, both BVHModel<Volume>: until the first contact, and the distance
 // without its points (FCL has none for OBB). In double precision Debian's library answers
 // fcl::collide() and fcl::distance(). It has no single precision: fcl_meshes.cpp instantiates the
@@ -50,11 +57,3 @@ typename Volume::S fcl_mesh_distance(const fcl::CollisionGeometry<typename Volum
 }  // namespace spherule
 
 extern template class fcl::DynamicAABBTreeCollisionManager<float>;
-
-namespace spherule {
-
-// The same spheres as FCL shapes: one DynamicAABBTreeCollisionManager holds the moving spheres
-// (moved and updated for every configuration), one each obstacle's; manager against manager.
-std::unique_ptr<Checker> make_fcl_sphere_checker(const Workload& workload);
-
-}  // namespace spherule

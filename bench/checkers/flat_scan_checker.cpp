@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/flat_scan_checker.h"
-
 #include "base/error.h"
 #include "bench/checkers/flat_scan/kernel.h"
-#include "bench/checkers/tree_checker.h"
+#include "bench/checkers/sphere_checkers.h"
 #include "tests/support/turn_between.h"
 
 #include <algorithm>
@@ -102,10 +100,10 @@ flat_scan::Frame frame_of(const RobotModel& robot, const Link& link,
 flat_scan::Check kernel_for(InstructionSet instructions) {
   if (!is_available(instructions)) throw Error("flat scan", "this machine lacks the instructions");
 #if defined(SPHERULE_X86_KERNELS)
-  if (instructions == InstructionSet::kAvx2) return &flat_scan::check_avx2;
-  if (instructions == InstructionSet::kAvx512) return &flat_scan::check_avx512;
+  if (instructions == InstructionSet::kAvx2) return &flat_scan::avx2::check;
+  if (instructions == InstructionSet::kAvx512) return &flat_scan::avx512::check;
 #endif
-  return &flat_scan::check_portable;
+  return &flat_scan::portable::check;
 }
 
 class FlatScanChecker : public Checker {

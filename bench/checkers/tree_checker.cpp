@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/tree_checker.h"
-
+#include "bench/checkers/sphere_checkers.h"
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"
 
@@ -38,13 +37,20 @@ double single_precision_pad(double reach) {
 
 namespace {
 
-class SingleTreeChecker : public Checker {
+class TreeChecker : public Checker {
  public:
-  explicit SingleTreeChecker(RobotChecker checker)
-      : checker_(std::move(checker)), scratch_(checker_) {}
+  TreeChecker(RobotChecker checker, bool in_batches)
+      : checker_(std::move(checker)), scratch_(checker_), in_batches_(in_batches) {}
 
   void check(std::span<const ArmPositions> configurations,
              std::span<std::uint8_t> verdicts) override {
+    if (configurations.empty()) return;
+    if (in_batches_) {
+      checker_.check_configs({configurations.front().data(), configurations.size() * kJoints},
+                             scratch_, verdicts);
+      for (std::uint8_t& verdict : verdicts) verdict ^= 1U;  // free to colliding
+      return;
+    }
     for (std::size_t i = 0; i < configurations.size(); ++i) {
       verdicts[i] = checker_.check_config(configurations[i], scratch_) ? 0 : 1;
     }
@@ -53,24 +59,7 @@ class SingleTreeChecker : public Checker {
  private:
   RobotChecker checker_;
   RobotChecker::Scratch scratch_;
-};
-
-class BatchTreeChecker : public Checker {
- public:
-  explicit BatchTreeChecker(RobotChecker checker)
-      : checker_(std::move(checker)), scratch_(checker_) {}
-
-  void check(std::span<const ArmPositions> configurations,
-             std::span<std::uint8_t> verdicts) override {
-    if (configurations.empty()) return;
-    checker_.check_configs({configurations.front().data(), configurations.size() * kJoints},
-                           scratch_, verdicts);
-    for (std::uint8_t& verdict : verdicts) verdict ^= 1U;  // free to colliding
-  }
-
- private:
-  RobotChecker checker_;
-  RobotChecker::Scratch scratch_;
+  bool in_batches_;
 };
 
 class PairTreeChecker : public SingleChecker {
@@ -141,9 +130,8 @@ std::unique_ptr<Checker> make_tree_checker(const Workload& workload, TreeMode mo
   const UsedMeshes used = mode == TreeMode::kConfirmed ? UsedMeshes::kAll
                           : mode == TreeMode::kMeshes  ? UsedMeshes::kOfRobot
                                                        : UsedMeshes::kNone;
-  RobotChecker checker = make_robot_checker(workload, instructions, used);
-  if (mode == TreeMode::kBatch) return std::make_unique<BatchTreeChecker>(std::move(checker));
-  return std::make_unique<SingleTreeChecker>(std::move(checker));
+  return std::make_unique<TreeChecker>(make_robot_checker(workload, instructions, used),
+                                       mode == TreeMode::kBatch);
 }
 
 }  // namespace spherule

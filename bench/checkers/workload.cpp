@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/checkers/workload.h"
 
-#include "bench/scenes/program.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "robot/model/kinematics.h"
 #include "tests/support/fcl_solid.h"
 

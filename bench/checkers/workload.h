@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstddef>
@@ -50,7 +50,7 @@ struct Workload {
   std::vector<Body> bodies = {};
   std::vector<Obstacle> obstacles = {};
   std::vector<ArmPositions> program = {};
-  std::vector<std::uint8_t> is_critical = {};  // of the program, see scenes/program.h
+  std::vector<std::uint8_t> is_critical = {};  // of the program, see scenes/work_cell.h
 };
 
 // The base does not move: whether it touches the table that it is bolted beside is no question of

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/paper/figures.h"
-
 #include "base/error.h"
-#include "bench/baseline/packing_cover.h"
-#include "bench/studies/fit_parts.h"
+#include "bench/baseline/sphere_methods.h"
+#include "bench/checkers/workload.h"
+#include "bench/paper/paper.h"
+#include "bench/studies/measure.h"
+#include "bench/studies/refined_cover.h"
+#include "collide/collide.h"
 #include "simplifier/simplify.h"
+#include "spheretree/build.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"
 
@@ -12,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 #include <vector>
@@ -19,8 +23,8 @@
 namespace spherule {
 namespace {
 
-constexpr double kError = 0.012;
-constexpr double kExternal = 0.030;
+constexpr double kFigure2Error = 0.012;
+constexpr double kFigure2External = 0.030;
 
 // A comb of three slots, 12 mm wide, in a block of 120 x 60 x 30 mm.
 TriangleMesh slotted_block() {
@@ -38,18 +42,19 @@ TriangleMesh slotted_block() {
 }
 
 Figure2::Fit packed(const TriangleMesh& part) {
-  SpherePacking packing = pack_spheres(part, {.max_error = kError});
+  SpherePacking packing = pack_spheres(part, {.max_error = kFigure2Error});
   const Certificate proof =
       certify(part, packing.inflated, {.external = &packing.solid, .volume = false});
-  if (!proof.covered || *proof.protrusion_over_simplified_max > kError) {
+  if (!proof.covered || *proof.protrusion_over_simplified_max > kFigure2Error) {
     throw Error("figure 2", "the packing does not cover within the error");
   }
   return {"packing", std::move(packing.inflated), *proof.protrusion_over_simplified_max};
 }
 
 Figure2::Fit bounding(const TriangleMesh& part, const char* name, CoverMethod method) {
-  Simplification result =
-      simplify(part, {.max_error = kError, .min_external_diameter = kExternal, .method = method});
+  Simplification result = simplify(
+      part,
+      {.max_error = kFigure2Error, .min_external_diameter = kFigure2External, .method = method});
   check_promises(result, "figure 2");
   return {name, std::move(result.cover.spheres),
           *result.certificate.protrusion_over_simplified_max};
@@ -58,7 +63,7 @@ Figure2::Fit bounding(const TriangleMesh& part, const char* name, CoverMethod me
 }  // namespace
 
 Figure2 figure_2() {
-  Figure2 figure{slotted_block(), kError, kExternal, {}};
+  Figure2 figure{slotted_block(), kFigure2Error, kFigure2External, {}};
   figure.fits.push_back(packed(figure.part));
   figure.fits.push_back(bounding(figure.part, "bounding-paper", CoverMethod::kPaper));
   figure.fits.push_back(bounding(figure.part, "bounding-cover", CoverMethod::kCover));
@@ -150,9 +155,9 @@ std::vector<Figure3Row> figure_3() {
     Figure3Row row{.min_external_diameter = 1e-3 * millimetres};
     ExternalOptions options{.min_external_diameter = row.min_external_diameter,
                             .max_error = kFigureError};
-    row.reachable = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
+    row.uncovered_reachable = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
     options.placement = ExternalPlacement::kRandom;
-    row.random = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
+    row.uncovered_random = uncovered_share(place_external_spheres(pipe, options), kCellsAlong);
     rows.push_back(row);
   }
   return rows;
@@ -174,6 +179,98 @@ FitCourse packing_course() {
       pack_spheres(make_paper_pipe(),
                    {.max_error = kFigureError, .closed_below = 0.25 * kPaperBore, .history = true});
   return {"packing", std::move(result.history), std::move(result.inflated)};
+}
+
+namespace {
+
+constexpr double kTreeError = 0.004;  // of octree and rod
+constexpr double kRodDiameter = 0.02;
+constexpr double kRodLength = 0.15;
+constexpr double kAround = 0.02;  // how far from the pipe's box the rod's middle may be
+constexpr std::size_t kPoses = 4000;
+constexpr int kRounds = 5;
+constexpr std::uint64_t kPoseSeed = 3;
+
+std::vector<Pose> poses_near(const SphereTree& tree) {
+  RandomNumbers random(kPoseSeed);
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    Eigen::Vector3d middle = tree.box().center;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double reach = tree.box().half_size[axis] + kAround;
+      middle[axis] += random.between(-reach, reach);
+    }
+    poses.emplace_back(random.rotation(), middle);
+  }
+  return poses;
+}
+
+// Rounds alternate between the two trees.
+void measure(const SphereTree& rod, const std::vector<Pose>& poses, const SphereTree& own,
+             const SphereTree& ours, TreeRow& row) {
+  const std::pair<const SphereTree*, TreeCost*> trees[] = {{&own, &row.own}, {&ours, &row.ours}};
+  std::vector<bool> hits[2];
+  for (int i = 0; i < 2; ++i) {
+    const auto& [tree, cost] = trees[i];
+    std::uint64_t tests = 0;
+    for (const Pose& pose : poses) {
+      const CollisionResult result = collide(rod, pose, *tree, Pose(), {.max_pairs = 1});
+      tests += result.cost.node_tests;
+      hits[i].push_back(!result.pairs.empty());
+    }
+    cost->nodes = tree->node_count();
+    cost->depth = tree->depth();
+    cost->node_tests = static_cast<double>(tests) / static_cast<double>(poses.size());
+  }
+  if (hits[0] != hits[1])
+    throw Error(row.method, "two trees over the same spheres answer otherwise");
+  row.collision_percent = 100.0 *
+                          static_cast<double>(std::count(hits[0].begin(), hits[0].end(), true)) /
+                          static_cast<double>(poses.size());
+  std::vector<double> times[2];
+  for (int round = 0; round < kRounds; ++round) {
+    for (int i = 0; i < 2; ++i) {
+      const auto start = Clock::now();
+      for (const Pose& pose : poses) collide(rod, pose, *trees[i].first, Pose(), {.max_pairs = 1});
+      times[i].push_back(nanoseconds(Clock::now() - start) / static_cast<double>(poses.size()));
+    }
+  }
+  for (int i = 0; i < 2; ++i) trees[i].second->ns = median(times[i]);
+}
+
+}  // namespace
+
+std::vector<TreeRow> study_trees() {
+  const TriangleMesh pipe = make_paper_pipe();
+  const Simplification rod_fit =
+      simplify(make_cylinder(0.5 * kRodDiameter, kRodLength, 32), {.max_error = kTreeError});
+  const SphereTree rod = build_tree(rod_fit.cover.spheres);
+  const SphereLevels hubbard = hubbard_spheres(pipe);
+  const SphereLevels medial = medial_axis_tree(pipe);
+  const std::pair<const char*, SphereTree> trees[] = {
+      {"octree", octree_spheres(pipe, {.max_error = kTreeError}).tree},
+      {"hubbard", enclosing_tree(hubbard, hubbard.levels.back()).tree},
+      {"medial-axis", enclosing_tree(medial, medial.levels.back()).tree}};
+  std::vector<TreeRow> rows;
+  for (const auto& [method, tree] : trees) {
+    TreeRow row{.method = method, .leaves = tree.spheres().size()};
+    measure(rod, poses_near(tree), tree, build_tree(tree.spheres()), row);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void print_trees(const std::vector<TreeRow>& rows) {
+  std::printf(
+      "\ntrees over the pipe, a rod nearby: as the method has them | ours, the same leaves\n");
+  std::printf("%-12s %7s %6s %7s %6s %11s %8s | %7s %6s %11s %8s\n", "method", "leaves", "hit %",
+              "nodes", "depth", "node tests", "ns", "nodes", "depth", "node tests", "ns");
+  for (const TreeRow& row : rows) {
+    std::printf("%-12s %7zu %6.1f %7zu %6d %11.1f %8.0f | %7zu %6d %11.1f %8.0f\n",
+                row.method.c_str(), row.leaves, row.collision_percent, row.own.nodes, row.own.depth,
+                row.own.node_tests, row.own.ns, row.ours.nodes, row.ours.depth, row.ours.node_tests,
+                row.ours.ns);
+  }
 }
 
 }  // namespace spherule

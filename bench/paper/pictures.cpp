@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/paper/pictures.h"
-
-#include "base/error.h"
 #include "base/files.h"
-#include "bench/baseline/convex_hull.h"
-#include "bench/baseline/voxelisation.h"
-#include "bench/studies/fit_parts.h"
+#include "bench/baseline/mesh_methods.h"
+#include "bench/baseline/sphere_methods.h"
+#include "bench/paper/paper.h"
+#include "bench/studies/study.h"
 #include "tests/support/solids.h"
 
 #include <Eigen/Geometry>
@@ -23,6 +21,13 @@ namespace {
 
 constexpr double kAngle = 28.0;        // of the view's width, degrees
 constexpr double kHeightShare = 0.75;  // of a picture's height to its width
+
+// A mesh or spheres in one colour (red, green, blue from 0 to 1).
+struct PictureItem {
+  Eigen::Vector3d color;
+  TriangleMesh mesh{};
+  std::vector<Sphere> spheres{};
+};
 
 std::string text(const Eigen::Vector3d& v) {
   std::ostringstream out;
@@ -60,12 +65,11 @@ void draw(const PictureItem& item, std::ostringstream& out) {
   out << "texture { Finish } }\n";
 }
 
-}  // namespace
-
+// What POV-Ray makes a picture of, four wide to three high: all items seen from `towards_viewer` of
+// their middle, z up.
 void write_picture(const std::vector<PictureItem>& items, const Eigen::Vector3d& towards_viewer,
                    const std::filesystem::path& path) {
   const Eigen::AlignedBox3d box = box_around(items);
-  if (box.isEmpty()) throw Error(path.string(), "a picture of nothing");
   const double half_width = std::tan(0.5 * kAngle * std::numbers::pi / 180.0);
   const double away = 0.5 * box.diagonal().norm() / std::sin(std::atan(kHeightShare * half_width));
   const Eigen::Vector3d camera = box.center() + away * towards_viewer.normalized();
@@ -81,8 +85,6 @@ void write_picture(const std::vector<PictureItem>& items, const Eigen::Vector3d&
   for (const PictureItem& item : items) draw(item, out);
   write_file_atomically(path, out.str());
 }
-
-namespace {
 
 const Eigen::Vector3d kSteel(0.62, 0.66, 0.70);
 const Eigen::Vector3d kBlue(0.16, 0.44, 0.59);
@@ -136,10 +138,10 @@ void write_figure_4(const std::vector<FitCourse>& courses, const std::filesystem
 
 }  // namespace
 
-void write_pictures(const Workload& workload, const PaperResults& results,
-                    const std::filesystem::path& folder) {
-  write_figure_2(results.figure_2, folder);
-  write_figure_4(results.courses, folder);
+void write_pictures(const Workload& workload, const Figure2& figure,
+                    const std::vector<FitCourse>& courses, const std::filesystem::path& folder) {
+  write_figure_2(figure, folder);
+  write_figure_4(courses, folder);
   const Cell cell = place_cell(workload, workload.program[kShownConfiguration]);
   write_picture({in_spheres(cell, "robot"), in_spheres(cell, "torch")}, kFromTheSide,
                 folder / "paper-figure5.pov");

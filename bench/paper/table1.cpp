@@ -1,23 +1,125 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "bench/baseline/medial_axis.h"
-#include "bench/baseline/medial_cover.h"
-#include "bench/baseline/octree_spheres.h"
+#include "bench/baseline/mesh_methods.h"
+#include "bench/baseline/sphere_methods.h"
+#include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/workload.h"
-#include "bench/paper/figures.h"
+#include "bench/paper/paper.h"
 #include "bench/studies/measure.h"
-#include "bench/studies/refined_cover.h"
-#include "collide/collide.h"
 #include "simplifier/simplify.h"
 #include "spheretree/build.h"
-#include "tests/support/shapes.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <span>
 #include <utility>
 
 namespace spherule {
+namespace {
+
+// The narrowest way into the workpiece is its bore of 34 mm.
+constexpr double kNothingNarrower = 0.010;
+// Of the decomposition's parts: a tenth of a pipe.
+constexpr double kConcavity = 0.004;
+
+std::size_t workpiece_index(const Workload& workload) {
+  const auto found =
+      std::find_if(workload.obstacles.begin(), workload.obstacles.end(),
+                   [](const Obstacle& obstacle) { return obstacle.part.name == "workpiece"; });
+  if (found == workload.obstacles.end()) throw Error(workload.name, "has no workpiece");
+  return static_cast<std::size_t>(found - workload.obstacles.begin());
+}
+
+std::string count_of(std::size_t number, const char* what) {
+  return std::to_string(number) + ' ' + what;
+}
+
+std::vector<Sphere> by_papers_loop(const Part& part) {
+  const Simplification result =
+      simplify(part.mesh, {.max_error = part.max_error,
+                           .min_external_diameter = part.min_external_diameter,
+                           .method = CoverMethod::kPaper,
+                           .external = ExternalPlacement::kRandom});
+  if (!result.certificate.covered) throw Error(part.name, broken_promises(result));
+  return result.cover.spheres;
+}
+
+class Rows {
+ public:
+  explicit Rows(const Workload& workload)
+      : workload_(workload),
+        index_(workpiece_index(workload)),
+        part_(workload.obstacles[index_].part) {}
+
+  const Part& part() const { return part_; }
+
+  void add(Representation row) {
+    std::printf("  %s: %s\n", row.method.c_str(), row.complexity.c_str());
+    std::fflush(stdout);
+    rows_.push_back(std::move(row));
+  }
+
+  // The workpiece as another mesh, as convex parts, or as spheres.
+  void add_mesh(std::string method, const TriangleMesh& mesh, bool is_conservative,
+                std::optional<PaperRow> paper) {
+    Workload changed = workload_;
+    changed.obstacles[index_].part.mesh = mesh;
+    add({std::move(method), count_of(mesh.triangles.size(), "triangles"), is_conservative,
+         make_fcl_mesh_checker(changed, {}), std::move(paper)});
+  }
+  void add_convex(std::string method, const std::vector<TriangleMesh>& parts,
+                  bool is_conservative) {
+    add({std::move(method), count_of(parts.size(), parts.size() == 1 ? "hull" : "hulls"),
+         is_conservative, make_fcl_convex_checker(workload_, index_, parts)});
+  }
+  void add_spheres(std::string method, std::span<const Sphere> spheres, bool is_conservative,
+                   std::optional<PaperRow> paper = {}) {
+    Workload changed = workload_;
+    changed.obstacles[index_].part.tree = std::make_shared<const SphereTree>(build_tree(spheres));
+    add({std::move(method), count_of(spheres.size(), "spheres"), is_conservative,
+         make_tree_checker(changed, TreeMode::kMeshes), std::move(paper)});
+  }
+
+  std::vector<Representation> take() { return std::move(rows_); }
+
+ private:
+  const Workload& workload_;
+  std::size_t index_;
+  const Part& part_;
+  std::vector<Representation> rows_;
+};
+
+}  // namespace
+
+std::vector<Representation> make_representations(const Workload& workload) {
+  Rows rows(workload);
+  const Part& part = rows.part();
+  const TriangleMesh& mesh = part.mesh;
+  rows.add_mesh("original", mesh, true, PaperRow{"1942 triangles", 2032, 1798.0});
+  rows.add_mesh("decimated",
+                decimate(mesh, {.target_triangles = mesh.triangles.size() / 2, .measure = {}}).mesh,
+                false, PaperRow{"996 triangles", 1801, 894.0});
+  rows.add_convex("hull", {convex_hull(mesh).mesh}, true);
+  rows.add_convex("decomposition",
+                  decompose(mesh, {.max_concavity = kConcavity, .measure = {}}).parts, false);
+  const SpherePacking packing =
+      pack_spheres(mesh, {.max_error = part.max_error, .closed_below = kNothingNarrower});
+  rows.add_spheres("packing", packing.spheres, false, PaperRow{"4752 spheres", 2134, 258.0});
+  rows.add_spheres("packing-inflated", packing.inflated, true);
+  rows.add_spheres("voxels",
+                   voxelise(mesh, {.step = kPaperVoxel, .sphere = VoxelSphere::kInscribed}).spheres,
+                   false, PaperRow{"2675 spheres", 2865, 170.0});
+  rows.add_spheres("voxels-covering", voxelise(mesh, {.step = kPaperVoxel}).spheres, true);
+  rows.add_spheres("bounding-paper", by_papers_loop(part), true,
+                   PaperRow{"283 spheres", 2222, 102.0});
+  rows.add_spheres("bounding-cover", part.tree->spheres(), true);
+  rows.add({"all-simplified", count_of(sphere_count(workload), "spheres"), true,
+            make_tree_checker(workload, TreeMode::kSingle), PaperRow{"-", 2289, 7.0}});
+  return rows.take();
+}
+
 namespace {
 
 // Of the chosen queries.
@@ -75,101 +177,6 @@ void print_table1(const std::vector<Table1Row>& rows) {
                   row.paper->seconds, rows.front().paper->seconds / row.paper->seconds);
     }
     std::printf("\n");
-  }
-}
-
-namespace {
-
-constexpr double kError = 0.004;  // of octree and rod
-constexpr double kRodDiameter = 0.02;
-constexpr double kRodLength = 0.15;
-constexpr double kAround = 0.02;  // how far from the pipe's box the rod's middle may be
-constexpr std::size_t kPoses = 4000;
-constexpr int kRounds = 5;
-constexpr std::uint64_t kSeed = 3;
-
-std::vector<Pose> poses_near(const SphereTree& tree) {
-  RandomNumbers random(kSeed);
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < kPoses; ++i) {
-    Eigen::Vector3d middle = tree.box().center;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double reach = tree.box().half_size[axis] + kAround;
-      middle[axis] += random.between(-reach, reach);
-    }
-    poses.emplace_back(random.rotation(), middle);
-  }
-  return poses;
-}
-
-// Rounds alternate between the two trees.
-void measure(const SphereTree& rod, const std::vector<Pose>& poses, const SphereTree& own,
-             const SphereTree& ours, TreeRow& row) {
-  const std::pair<const SphereTree*, TreeCost*> trees[] = {{&own, &row.own}, {&ours, &row.ours}};
-  std::vector<bool> hits[2];
-  for (int i = 0; i < 2; ++i) {
-    const auto& [tree, cost] = trees[i];
-    std::uint64_t tests = 0;
-    for (const Pose& pose : poses) {
-      const CollisionResult result = collide(rod, pose, *tree, Pose(), {.max_pairs = 1});
-      tests += result.cost.node_tests;
-      hits[i].push_back(!result.pairs.empty());
-    }
-    cost->nodes = tree->node_count();
-    cost->depth = tree->depth();
-    cost->node_tests = static_cast<double>(tests) / static_cast<double>(poses.size());
-  }
-  if (hits[0] != hits[1])
-    throw Error(row.method, "two trees over the same spheres answer otherwise");
-  row.collision_percent = 100.0 *
-                          static_cast<double>(std::count(hits[0].begin(), hits[0].end(), true)) /
-                          static_cast<double>(poses.size());
-  std::vector<double> times[2];
-  for (int round = 0; round < kRounds; ++round) {
-    for (int i = 0; i < 2; ++i) {
-      const auto start = Clock::now();
-      for (const Pose& pose : poses) collide(rod, pose, *trees[i].first, Pose(), {.max_pairs = 1});
-      times[i].push_back(nanoseconds(Clock::now() - start) / static_cast<double>(poses.size()));
-    }
-  }
-  for (int i = 0; i < 2; ++i) {
-    std::sort(times[i].begin(), times[i].end());
-    trees[i].second->ns = quantile(times[i], 0.5);
-  }
-}
-
-}  // namespace
-
-std::vector<TreeRow> study_trees() {
-  const TriangleMesh pipe = make_paper_pipe();
-  const Simplification rod_fit =
-      simplify(make_cylinder(0.5 * kRodDiameter, kRodLength, 32), {.max_error = kError});
-  const SphereTree rod = build_tree(rod_fit.cover.spheres);
-  const SphereLevels hubbard = hubbard_spheres(pipe);
-  const SphereLevels medial = medial_axis_tree(pipe);
-  const std::pair<const char*, SphereTree> trees[] = {
-      {"octree", octree_spheres(pipe, {.max_error = kError}).tree},
-      {"hubbard", enclosing_tree(hubbard, hubbard.levels.back()).tree},
-      {"medial-axis", enclosing_tree(medial, medial.levels.back()).tree}};
-  std::vector<TreeRow> rows;
-  for (const auto& [method, tree] : trees) {
-    TreeRow row{.method = method, .leaves = tree.spheres().size()};
-    measure(rod, poses_near(tree), tree, build_tree(tree.spheres()), row);
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-void print_trees(const std::vector<TreeRow>& rows) {
-  std::printf(
-      "\ntrees over the pipe, a rod nearby: as the method has them | ours, the same leaves\n");
-  std::printf("%-12s %7s %6s %7s %6s %11s %8s | %7s %6s %11s %8s\n", "method", "leaves", "hit %",
-              "nodes", "depth", "node tests", "ns", "nodes", "depth", "node tests", "ns");
-  for (const TreeRow& row : rows) {
-    std::printf("%-12s %7zu %6.1f %7zu %6d %11.1f %8.0f | %7zu %6d %11.1f %8.0f\n",
-                row.method.c_str(), row.leaves, row.collision_percent, row.own.nodes, row.own.depth,
-                row.own.node_tests, row.own.ns, row.ours.nodes, row.ours.depth, row.ours.node_tests,
-                row.ours.ns);
   }
 }
 

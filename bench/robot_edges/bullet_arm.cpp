@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/robot_edges/bullet_arm.h"
-
 #include "bench/checkers/bullet_pair_test.h"
+#include "bench/robot_edges/peer_arms.h"
 #include "robot/model/kinematics.h"
 
 #include <algorithm>

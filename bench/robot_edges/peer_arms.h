@@ -2,14 +2,10 @@
 #pragma once
 
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "robot/pairs/allowed_collisions.h"
 
-#include <cstddef>
 #include <memory>
 #include <span>
-#include <utility>
-#include <vector>
 
 namespace spherule {
 
@@ -37,41 +33,29 @@ class FclArm : public ArmChecker {
   std::unique_ptr<Parts> parts_;
 };
 
-// The arm's spheres without a hierarchy: all of each link against all obstacles, and all pairs of
-// two links', behind a test of the spheres around links (and, for the points of a cloud, of each
-// point). Double precision, in loops that compilers vectorise. Solid meshes are not queried.
-class FlatArm {
- public:
-  FlatArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene);
+// What a link is to Bullet.
+enum class BulletLinks {
+  kHulls,    // the convex hull of its mesh, as PyBullet and Tesseract have it: another geometry
+  kGImpact,  // its triangles (btGImpactMeshShape), the only moving ones that Bullet has
+};
 
-  bool collides(std::span<const double> configuration);
+// The arm in a scene, and against itself where this is not allowed, by Bullet (single precision, as
+// Debian packages it): margins zero, the obstacles in a dynamic AABB tree of Bullet, what it leaves
+// by contactPairTest, until a pair touches. Primitives are solid, and so are the spheres about the
+// points of a cloud; the scene's mesh is its triangles, a btBvhTriangleMeshShape to hulls.
+class BulletArm : public ArmChecker {
+ public:
+  BulletArm(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene,
+            BulletLinks links);
+  ~BulletArm() override;
+
+  const char* name() const override;
+  bool collides(std::span<const double> configuration) override;
 
  private:
-  // Coordinates and radii, in the link's frame or the world.
-  struct Spheres {
-    std::vector<double> x, y, z, radius;
-
-    void add(const Sphere& sphere);
-    std::size_t size() const { return x.size(); }
-  };
-  struct LinkSpheres {
-    std::size_t link;
-    bool moves;
-    Spheres spheres;
-    Sphere around;
-  };
-
-  static bool any_within(const Spheres& spheres, const Eigen::Vector3d& center, double radius);
-  bool touches_obstacles(const Spheres& placed, const Sphere& around) const;
-
-  const RobotModel& robot_;
-  const ArmScene& scene_;
-  std::vector<LinkSpheres> links_;
-  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of links_
-  Spheres cloud_;
-  std::vector<Pose> poses_;
-  std::vector<Spheres> placed_;
-  std::vector<Sphere> around_;
+  struct Parts;
+  BulletLinks links_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace spherule

@@ -7,11 +7,9 @@
 //   SPHERULE_MODELS=DIR spherule_arm_planning [PROBLEMS [STEP [RADIUS | SPHERIZED.urdf]]]
 
 #include "base/error.h"
-#include "bench/planning/problem_study.h"
 #include "bench/robot_edges/arm.h"
-#include "bench/robot_edges/arm_problems.h"
-#include "bench/robot_edges/arm_scenes.h"
 #include "bench/robot_edges/peer_arms.h"
+#include "bench/robot_edges/planning.h"
 #include "tests/support/program.h"
 
 #include <cstdio>
@@ -25,8 +23,9 @@ namespace {
 
 constexpr double kRecheckStep = 0.002;  // radians
 
-ProblemStudy study_scene(const Arm& arm, const AllowedCollisions& allowed, const ArmScene& scene,
-                         std::size_t problems, const PlanOptions& options) {
+std::vector<ProblemRow> study_scene(const Arm& arm, const AllowedCollisions& allowed,
+                                    const ArmScene& scene, std::size_t problems,
+                                    const PlanOptions& options) {
   const RobotChecker checker = robot_scene(arm, allowed, scene).snapshot();
   FclArm judge(arm, allowed, scene, FclVolume::kObbRss);
   FclArm fastest(arm, allowed, scene, FclVolume::kObb);
@@ -48,20 +47,19 @@ void print_head(const PlanOptions& options) {
       options.step, kRecheckStep);
 }
 
-void print_row(const char* name, const ProblemStudy& study) {
-  const ProblemRow& proved = study.rows[0];
-  const ProblemRow& sampled = study.rows[1];
-  const ProblemRow& meshes = study.rows[2];
-  const ProblemComparison with_sampled = compare(proved, sampled);
-  const ProblemComparison with_meshes = compare(proved, meshes);
+void print_row(const char* name, const std::vector<ProblemRow>& rows) {
+  const ProblemRow& proved = rows[0];
+  const ProblemRow& sampled = rows[1];
+  const ProblemRow& meshes = rows[2];
+  const TimeRatios of_sampled = compare(proved, sampled);
+  const TimeRatios of_meshes = compare(proved, meshes);
   std::printf(
       "| %-7s | %4zu | %zu / %zu / %zu | %zu / %zu / %zu | %.2f / %.2f / %.2f | %.1f %.1f | %.1f "
       "%.1f |\n",
-      name, proved.plans.size(), proved.ended(PlanEnd::kSolved), sampled.ended(PlanEnd::kSolved),
-      meshes.ended(PlanEnd::kSolved), proved.paths_in_contact(), sampled.paths_in_contact(),
-      meshes.paths_in_contact(), median_milliseconds(proved), median_milliseconds(sampled),
-      median_milliseconds(meshes), with_sampled.median_ratio, with_sampled.total_ratio,
-      with_meshes.median_ratio, with_meshes.total_ratio);
+      name, proved.plans.size(), proved.solved, sampled.solved, meshes.solved, proved.in_contact,
+      sampled.in_contact, meshes.in_contact, proved.median_milliseconds(),
+      sampled.median_milliseconds(), meshes.median_milliseconds(), of_sampled.median,
+      of_sampled.of_sums, of_meshes.median, of_meshes.of_sums);
   std::fflush(stdout);
 }
 
@@ -71,16 +69,16 @@ void study(const Arm& arm, std::size_t problems, const PlanOptions& options) {
   for (ArmScene& scene : larger_scenes()) scenes.push_back(std::move(scene));
   std::printf("%zu triangles, %zu spheres\n", arm.triangles, arm.spheres);
   print_head(options);
-  ProblemStudy all;
+  std::vector<ProblemRow> all;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     // The remainder goes to the first ones.
     const std::size_t count = problems / scenes.size() + (i < problems % scenes.size() ? 1 : 0);
-    const ProblemStudy study = study_scene(arm, allowed, scenes[i], count, options);
-    print_row(scenes[i].name.c_str(), study);
-    all.add(study);
+    const auto rows = study_scene(arm, allowed, scenes[i], count, options);
+    print_row(scenes[i].name.c_str(), rows);
+    append(all, rows);
   }
   print_row("all", all);
-  if (all.rows.front().paths_in_contact() > 0) {
+  if (all.front().in_contact > 0) {
     throw Error("planning", "a path that was proved free is in contact");
   }
 }

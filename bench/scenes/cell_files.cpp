@@ -3,8 +3,7 @@
 // torch, workpiece and table (STL, metres), cell.json and path.csv, every tenth configuration of
 // the weld program's start. Usage: spherule_cell_files FOLDER
 
-#include "bench/scenes/program.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "io/mesh_io.h"
 
 #include <Eigen/Geometry>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scenes/program.h"
-
 #include "base/error.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
+#include "robot/model/kinematics.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -20,7 +21,79 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+constexpr int kSteps = 200;
+// Metres and radians, before rounding to the grid: far below the grid, so that the result does not
+// depend on the way there.
+constexpr double kSolved = 1e-12;
+constexpr double kAccepted = 5e-6;
+constexpr double kDamping = 1e-3;
+constexpr double kLongestStep = 0.2;  // radians
+
+// Shift and rotation vector that are lacking from `from` to `to`, in the world's frame.
+Vector6d difference(const Pose& from, const Pose& to) {
+  Eigen::Quaterniond turn = to.rotation().normalized() * from.rotation().normalized().conjugate();
+  if (turn.w() < 0.0) turn.coeffs() *= -1.0;
+  const double sine = turn.vec().norm();
+  const double scale = sine > 1e-12 ? 2.0 * std::atan2(sine, turn.w()) / sine : 2.0;
+  Vector6d result;
+  result << to.translation() - from.translation(), scale * turn.vec();
+  return result;
+}
+
+Matrix6d jacobian(const RobotModel& robot, const std::vector<Pose>& world_from_link,
+                  const Eigen::Vector3d& tip) {
+  Matrix6d result;
+  for (int i = 0; i < kJoints; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    const Pose& link = world_from_link[index + 1];
+    const Eigen::Vector3d axis = link.matrix() * robot.joints()[index].axis;
+    result.col(i) << axis.cross(tip - link.translation()), axis;
+  }
+  return result;
+}
+
+// Damped least squares (Wampler 1986) from a start, so that a sequence of near targets gives a
+// continuous motion: positions on the grid that bring the flange within 5 micrometres and 5e-6
+// radians of the target, joint limits kept; nothing where 200 steps do not get there.
+std::optional<ArmPositions> solve_inverse_kinematics(const RobotModel& robot,
+                                                     const Pose& world_from_flange,
+                                                     const ArmPositions& start) {
+  ArmPositions positions = start;
+  std::vector<Pose> world_from_link;
+  const auto lacking = [&] {
+    forward_kinematics(robot, positions, world_from_link);
+    return difference(world_from_link.back() * link6_from_flange(), world_from_flange);
+  };
+  for (int step = 0; step < kSteps; ++step) {
+    const Vector6d error = lacking();
+    if (error.cwiseAbs().maxCoeff() < kSolved) break;
+    const Matrix6d j = jacobian(robot, world_from_link,
+                                (world_from_link.back() * link6_from_flange()).translation());
+    const Matrix6d damped = j * j.transpose() + kDamping * kDamping * Matrix6d::Identity();
+    Vector6d move = j.transpose() * damped.ldlt().solve(error);
+    move *= std::min(1.0, kLongestStep / std::max(move.cwiseAbs().maxCoeff(), 1e-30));
+    for (int i = 0; i < kJoints; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const Joint& joint = robot.joints()[index];
+      positions[index] = std::clamp(positions[index] + move[i], joint.lower, joint.upper);
+    }
+  }
+  positions = on_joint_grid(positions);
+  if (lacking().cwiseAbs().maxCoeff() > kAccepted) return std::nullopt;
+  return positions;
+}
+
+// A place and a direction for the wire's end, in the workpiece's frame.
+struct WireTarget {
+  Vector3d position;
+  Vector3d direction;  // unit, into the metal
+};
+
 // Lengths in metres, angles in radians.
+constexpr double kLowestSeamAngle = 0.35;  // of a seam that is welded: there the nozzle has room
 constexpr double kStandoff = 0.006;        // of the wire's end from the metal
 constexpr double kCrotchStandoff = 0.008;  // more of it at the bottom of a seam, for the nozzle
 constexpr double kTackDepth = 0.0015;      // how far a tack pushes the wire into the metal
@@ -78,6 +151,14 @@ double tack(double share, double first, double second) {
   return std::max(at(first), at(second));
 }
 
+// How far the wire's end is kept off a point of the metal, along the mean of its normals: farther
+// in the crotch of a seam, for the nozzle. Metres.
+double standoff(const SeamPoint& point) {
+  // The sharper the corner between the pipes, the smaller the sum of their normals.
+  const double sharpness = 1.0 - point.normal_a.dot(point.normal_b);
+  return kStandoff + 2.0 * kCrotchStandoff * sharpness;
+}
+
 std::vector<WireTarget> follow(const Path& path, std::size_t length, std::mt19937_64& engine) {
   const Wobble tilt_along(engine);
   const Wobble tilt_across(engine);
@@ -105,14 +186,8 @@ std::vector<WireTarget> follow(const Path& path, std::size_t length, std::mt1993
   return targets;
 }
 
-}  // namespace
-
-double standoff(const SeamPoint& point) {
-  // The sharper the corner between the pipes, the smaller the sum of their normals.
-  const double sharpness = 1.0 - point.normal_a.dot(point.normal_b);
-  return kStandoff + 2.0 * kCrotchStandoff * sharpness;
-}
-
+// Runs of the torch over the workpiece, each with `length` targets: across the joint along two
+// seams, along a pipe, around a pipe's rim; with weave, tilt and tack points. Always the same.
 std::vector<std::vector<WireTarget>> make_weld_passes(std::size_t length) {
   std::vector<Path> paths;
   for (int round = 0; round < 3; ++round) {
@@ -125,10 +200,6 @@ std::vector<std::vector<WireTarget>> make_weld_passes(std::size_t length) {
   for (const Path& path : paths) passes.push_back(follow(path, length, engine));
   return passes;
 }
-
-namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kTableDistance = 1.55;
 constexpr double kWorkpieceYaw = 0.2;  // radians
@@ -221,6 +292,13 @@ void weld(ProgramWriter& writer, const std::vector<WireTarget>& targets) {
 }
 
 }  // namespace
+
+ArmPositions on_joint_grid(const ArmPositions& positions) {
+  ArmPositions result;
+  std::transform(positions.begin(), positions.end(), result.begin(),
+                 [](double q) { return std::nearbyint(q * 0x1p20) * 0x1p-20; });
+  return result;
+}
 
 Pose world_from_table() {
   return Pose::from_translation({kTableDistance, 0.0, 0.0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"
 
@@ -54,17 +54,13 @@ Pose link6_from_flange() {
   return Pose::from_translation({0.14, 0.0, 0.0});
 }
 
-}  // namespace spherule
+namespace {
 
 // The links of make_robot() as solids. Each is drawn in its own frame, in metres; the boxes follow
 // those of the real robot's published visual meshes to some centimetres.
 
-namespace spherule {
-namespace {
-
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 const Vector2d kOrigin = Vector2d::Zero();
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/scenes/work_cell_parts.h"
-
+#include "bench/scenes/work_cell.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"
 
@@ -62,9 +61,6 @@ TriangleMesh make_table() {
 }
 
 namespace {
-
-using Eigen::Vector2d;
-using Eigen::Vector3d;
 
 constexpr std::size_t kTriangles = 4318;
 constexpr double kBend = 0.25 * std::numbers::pi;  // of the swan neck, towards -z
@@ -173,8 +169,6 @@ Pose flange_from_wire() {
 }
 
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr std::size_t kWorkpieceTriangles = 1942;
 constexpr int kSides = 64;  // a multiple of 4: the top and the bottom of the joint are corners

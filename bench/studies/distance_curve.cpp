@@ -125,11 +125,6 @@ Places random_places(const Part& a, const Part& b, double size) {
   return result;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
-
 // The engines on one set of poses in turn: of each pose the median over the rounds, of these the
 // median.
 template <class Query>
@@ -258,7 +253,7 @@ std::vector<DistanceRow> study_distances(const Part& moving, const Part& standin
     curve.set_poses(poses.by_mesh[level], poses.by_spheres[level]);
     DistanceRow row;
     row.relative = kRelative[level];
-    row.distance = kRelative[level] * size;
+    row.distance_m = kRelative[level] * size;
     curve.time(options.rounds, row);
     curve.count(row);
     rows.push_back(row);

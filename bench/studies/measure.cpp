@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/studies/measure.h"
 
-#include "bench/scenes/program.h"
+#include "base/error.h"
+#include "bench/scenes/work_cell.h"
+#include "spheretree/build.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <span>
+#include <utility>
 
 namespace spherule {
 
@@ -17,6 +21,11 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0.0 : quantile(values, 0.5);
+}
+
 // What two readings of the clock with nothing between them say.
 double clock_cost() {
   std::vector<double> readings(10001);
@@ -24,8 +33,7 @@ double clock_cost() {
     const auto start = Clock::now();
     reading = nanoseconds(Clock::now() - start);
   }
-  std::sort(readings.begin(), readings.end());
-  return quantile(readings, 0.5);
+  return median(std::move(readings));
 }
 
 namespace {
@@ -138,6 +146,51 @@ std::vector<Measurement> measure(const std::vector<Method>& methods,
     time_single_queries(*methods[m].checker, timed, cost, results[m]);
   }
   return results;
+}
+
+void print_fit(const FitRecord& fit) {
+  std::printf("  %s: %zu spheres, %.1f s\n", fit.part.c_str(), fit.spheres, fit.seconds);
+  std::fflush(stdout);
+}
+
+void check_promises(const Simplification& fit, const std::string& part) {
+  const std::string broken = broken_promises(fit);
+  if (!broken.empty()) throw Error(part, broken);
+}
+
+namespace {
+
+FitRecord fit(Part& part, int effort) {
+  SimplifyOptions options;
+  options.max_error = part.max_error;
+  options.min_external_diameter = part.min_external_diameter;
+  options.effort = effort;
+  const auto start = Clock::now();
+  const Simplification result = simplify(part.mesh, options);
+  const std::chrono::duration<double> elapsed = Clock::now() - start;
+  check_promises(result, part.name);
+  part.tree = std::make_shared<const SphereTree>(build_tree(result.cover.spheres));
+  return {part.name,
+          part.mesh.triangles.size(),
+          result.cover.spheres.size(),
+          part.max_error,
+          part.min_external_diameter,
+          elapsed.count(),
+          true};
+}
+
+}  // namespace
+
+std::vector<FitRecord> fit_parts(Workload& workload,
+                                 const std::function<void(const FitRecord&)>& done, int effort) {
+  std::vector<FitRecord> records;
+  const auto add = [&](Part& part) {
+    records.push_back(fit(part, effort));
+    done(records.back());
+  };
+  for (Body& body : workload.bodies) add(body.part);
+  for (Obstacle& obstacle : workload.obstacles) add(obstacle.part);
+  return records;
 }
 
 }  // namespace spherule

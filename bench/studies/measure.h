@@ -1,24 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Fits of a workload, and what an engine takes for its queries.
+
 #include "bench/checkers/workload.h"
+#include "simplifier/simplify.h"
 
 #include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace spherule {
 
+struct FitRecord {
+  std::string part;
+  std::size_t triangles = 0;
+  std::size_t spheres = 0;
+  double max_error = 0.0;
+  double min_external_diameter = 0.0;
+  double seconds = 0.0;
+  bool covered = false;
+};
+
+// A line on standard output.
+void print_fit(const FitRecord& fit);
+
+// Throws Error naming the part and its broken_promises(), if there are any: nothing measured on
+// such a set is worth having.
+void check_promises(const Simplification& fit, const std::string& part);
+
+// Rounds of the search: fewer than by default, since the workpiece is large for its E.
+inline constexpr int kFitEffort = 30;
+
+// simplify() and build_tree() for every part of the workload; `done` is told of each. Throws Error
+// as check_promises() does.
+std::vector<FitRecord> fit_parts(Workload& workload,
+                                 const std::function<void(const FitRecord&)>& done,
+                                 int effort = kFitEffort);
+
 using Clock = std::chrono::steady_clock;
 
 double nanoseconds(Clock::duration duration);
 
 double quantile(const std::vector<double>& sorted, double share);
+double median(std::vector<double> values);  // 0 of none
 
 // What two readings of the clock with nothing between them say, in nanoseconds.
 double clock_cost();

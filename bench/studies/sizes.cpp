@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/checkers/flat_scan_checker.h"
-#include "bench/checkers/tree_checker.h"
-#include "bench/scenes/program.h"
+#include "bench/checkers/sphere_checkers.h"
+#include "bench/scenes/work_cell.h"
 #include "bench/studies/refined_cover.h"
 #include "bench/studies/study.h"
 #include "collide/collide.h"

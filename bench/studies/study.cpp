@@ -2,12 +2,28 @@
 #include "bench/studies/study.h"
 
 #include "base/error.h"
+#include "io/mesh_io.h"
+#include "io/sphere_file.h"
+#include "robot/model/kinematics.h"
+#include "tests/support/solids.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
 
 namespace spherule {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SizeRow, factor, spheres, single_ns, shuffled_ns, batch_ns,
+                                   free_ns, node_tests, collisions, missed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SmallRow, obstacles, robot_spheres, order, collision_percent,
+                                   single_ns, batch_ns, collides_ns, kinematics_ns, flat_scan_ns,
+                                   missed, extra)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DistanceRow, relative, distance_m, fcl_collide_ns,
+                                   fcl_collide_setting, fcl_boxed_collide_ns,
+                                   fcl_boxed_collide_setting, collides_ns, collides_same_poses_ns,
+                                   confirmed_ns, overlap_percent, node_tests, fcl_distance_ns,
+                                   fcl_distance_setting, distance_ns, distance_node_tests)
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -54,7 +70,7 @@ void print_distances(const std::vector<DistanceRow>& rows) {
   for (const DistanceRow& row : rows) {
     std::printf(
         "%7.3f %8.2f | %9.0f %-13s %9.0f %-13s | %9.0f %7.2f %7.2f | %9.0f %9.0f %7.0f %7.0f\n",
-        row.relative, 1e3 * row.distance, row.fcl_collide_ns, row.fcl_collide_setting.c_str(),
+        row.relative, 1e3 * row.distance_m, row.fcl_collide_ns, row.fcl_collide_setting.c_str(),
         row.fcl_boxed_collide_ns, row.fcl_boxed_collide_setting.c_str(), row.collides_ns,
         row.fcl_collide_ns / row.collides_ns, row.fcl_boxed_collide_ns / row.collides_ns,
         row.collides_same_poses_ns, row.confirmed_ns, row.overlap_percent, row.node_tests);
@@ -62,9 +78,9 @@ void print_distances(const std::vector<DistanceRow>& rows) {
   std::printf("%7s %8s | %9s %-13s | %9s %7s %7s\n", "d/size", "d mm", "fcl dist.", "(setting)",
               "distance", "x", "tests");
   for (const DistanceRow& row : rows) {
-    std::printf("%7.3f %8.2f | %9.0f %-13s | %9.0f %7.2f %7.0f\n", row.relative, 1e3 * row.distance,
-                row.fcl_distance_ns, row.fcl_distance_setting.c_str(), row.distance_ns,
-                row.fcl_distance_ns / row.distance_ns, row.distance_node_tests);
+    std::printf("%7.3f %8.2f | %9.0f %-13s | %9.0f %7.2f %7.0f\n", row.relative,
+                1e3 * row.distance_m, row.fcl_distance_ns, row.fcl_distance_setting.c_str(),
+                row.distance_ns, row.fcl_distance_ns / row.distance_ns, row.distance_node_tests);
   }
 }
 
@@ -106,51 +122,46 @@ Json run_studies(const Workload& workload, const std::vector<std::uint32_t>& tou
   print_distances(distances);
   std::fflush(stdout);
   check_nothing_missed(workload, sizes, small);
-  Json json{{"sizes", Json::array()},
-            {"small_environments", Json::array()},
-            {"distances", Json::array()}};
-  for (const SizeRow& row : sizes) {
-    json["sizes"].push_back({{"factor", row.factor},
-                             {"spheres", row.spheres},
-                             {"single_ns", row.single_ns},
-                             {"shuffled_ns", row.shuffled_ns},
-                             {"batch_ns", row.batch_ns},
-                             {"free_ns", row.free_ns},
-                             {"node_tests", row.node_tests},
-                             {"collisions", row.collisions},
-                             {"missed", row.missed}});
+  return {{"sizes", nlohmann::json(sizes)},
+          {"small_environments", nlohmann::json(small)},
+          {"distances", nlohmann::json(distances)}};
+}
+
+namespace {
+
+void add(const Part& part, const Pose& pose, PlacedParts& group) {
+  append(group.mesh, placed(part.mesh, pose.matrix(), pose.translation()));
+  for (const Sphere& sphere : part.tree->spheres()) {
+    group.spheres.push_back({pose * sphere.center, sphere.radius});
   }
-  for (const SmallRow& row : small) {
-    json["small_environments"].push_back({{"obstacles", row.obstacles},
-                                          {"robot_spheres", row.robot_spheres},
-                                          {"order", row.order},
-                                          {"collision_percent", row.collision_percent},
-                                          {"single_ns", row.single_ns},
-                                          {"batch_ns", row.batch_ns},
-                                          {"collides_ns", row.collides_ns},
-                                          {"kinematics_ns", row.kinematics_ns},
-                                          {"flat_scan_ns", row.flat_scan_ns},
-                                          {"missed", row.missed},
-                                          {"extra", row.extra}});
+}
+
+}  // namespace
+
+std::map<std::string, PlacedParts> place_cell(const Workload& workload,
+                                              const ArmPositions& configuration) {
+  std::vector<Pose> world_from_link;
+  forward_kinematics(workload.robot, configuration, world_from_link);
+  std::map<std::string, PlacedParts> groups;
+  for (const Body& body : workload.bodies) {
+    add(body.part, world_from_link[static_cast<std::size_t>(body.link)],
+        groups[body.part.name == "torch" ? "torch" : "robot"]);
   }
-  for (const DistanceRow& row : distances) {
-    json["distances"].push_back({{"relative", row.relative},
-                                 {"distance_m", row.distance},
-                                 {"fcl_collide_ns", row.fcl_collide_ns},
-                                 {"fcl_collide_setting", row.fcl_collide_setting},
-                                 {"fcl_boxed_collide_ns", row.fcl_boxed_collide_ns},
-                                 {"fcl_boxed_collide_setting", row.fcl_boxed_collide_setting},
-                                 {"collides_ns", row.collides_ns},
-                                 {"collides_same_poses_ns", row.collides_same_poses_ns},
-                                 {"confirmed_ns", row.confirmed_ns},
-                                 {"overlap_percent", row.overlap_percent},
-                                 {"node_tests", row.node_tests},
-                                 {"fcl_distance_ns", row.fcl_distance_ns},
-                                 {"fcl_distance_setting", row.fcl_distance_setting},
-                                 {"distance_ns", row.distance_ns},
-                                 {"distance_node_tests", row.distance_node_tests}});
+  for (const Obstacle& obstacle : workload.obstacles) {
+    add(obstacle.part, obstacle.world_from_part, groups[obstacle.part.name]);
   }
-  return json;
+  return groups;
+}
+
+void write_scene(const Workload& workload, const ArmPositions& configuration,
+                 const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const auto& [name, group] : place_cell(workload, configuration)) {
+    write_stl(group.mesh, folder / (name + ".stl"));
+    SphereFile file;
+    file.spheres = group.spheres;
+    save_spheres(file, folder / (name + ".spheres.json"));
+  }
 }
 
 }  // namespace spherule

@@ -10,6 +10,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,7 +61,7 @@ std::vector<SmallRow> study_small_environments(const Workload& workload,
 struct DistanceRow {
   double relative =
       0.0;  // distance / size; size: the mean of the diameters of the spheres around them
-  double distance = 0.0;  // metres
+  double distance_m = 0.0;
   // Booleans. FCL at a distance of the meshes, the fastest of its settings, alone and behind our
   // test of exact boxes; ours at that distance of the sphere sets, then in FCL's poses, where the
   // sphere sets are nearer or overlap, then there with contacts confirmed on the triangles.
@@ -87,5 +89,26 @@ std::vector<DistanceRow> study_distances(const Part& moving, const Part& standin
 nlohmann::ordered_json run_studies(const Workload& workload,
                                    const std::vector<std::uint32_t>& touching_bodies,
                                    const StudyOptions& options);
+
+// A configuration of the first weld, for pictures.
+inline constexpr std::size_t kShownConfiguration = 300;
+
+// Parts in their places, in the world's frame, as meshes and as spheres.
+struct PlacedParts {
+  TriangleMesh mesh;
+  std::vector<Sphere> spheres;
+};
+
+// The cell in one configuration: robot, torch, workpiece and table, by these names.
+std::map<std::string, PlacedParts> place_cell(const Workload& workload,
+                                              const ArmPositions& configuration);
+
+// The same for `spherule view`: FOLDER/PART.stl and FOLDER/PART.spheres.json. Throws Error.
+void write_scene(const Workload& workload, const ArmPositions& configuration,
+                 const std::filesystem::path& folder);
+
+// The same cell with the published visual meshes of the ABB IRB 4400L and a real torch, from a
+// folder that holds robots/abb_irb4400l and torch/torch.stl. Throws Error if they are not there.
+Workload make_real_cell(const std::filesystem::path& models);
 
 }  // namespace spherule

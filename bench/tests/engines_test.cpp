@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
+#include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/fcl_mesh_checker.h"
-#include "bench/checkers/flat_scan_checker.h"
-#include "bench/checkers/tree_checker.h"
 #include "bench/checkers/workload.h"
-#include "bench/scenes/work_cell_parts.h"
-#include "bench/studies/fit_parts.h"
-#include "bench/tests/surface_spheres.h"
+#include "bench/scenes/work_cell.h"
+#include "bench/studies/measure.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 #include "tests/support/random.h"
@@ -26,6 +24,26 @@
 
 namespace spherule {
 namespace {
+
+using test::Random;
+
+// A sphere about the box of every triangle: covers the surface, without any fit.
+std::shared_ptr<const SphereTree> surface_spheres(const TriangleMesh& mesh) {
+  std::vector<Sphere> spheres;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    Eigen::AlignedBox3d box;
+    for (int i = 0; i < 3; ++i) box.extend(mesh.vertices[static_cast<std::size_t>(t[i])]);
+    spheres.push_back({box.center(), 0.5 * box.diagonal().norm() * (1.0 + 1e-12)});
+  }
+  return std::make_shared<const SphereTree>(build_tree(spheres));
+}
+
+void add_surface_spheres(Workload& cell) {
+  for (Body& body : cell.bodies) body.part.tree = surface_spheres(body.part.mesh);
+  for (Obstacle& obstacle : cell.obstacles) {
+    obstacle.part.tree = surface_spheres(obstacle.part.mesh);
+  }
+}
 
 std::vector<ArmPositions> every(const Workload& cell, std::size_t stride) {
   std::vector<ArmPositions> sample;
@@ -56,7 +74,7 @@ TEST(Engines, FclAgreesWithTheOracleInEverySetting) {
 
 TEST(Engines, SphereEnginesAgreeAndMissNothing) {
   Workload cell = make_paper_cell();
-  test::add_surface_spheres(cell);
+  add_surface_spheres(cell);
   const auto sample = every(cell, 601);
   const auto touching = Oracle(cell).touching_bodies(sample);
   const auto by_tree = verdicts(*make_tree_checker(cell, TreeMode::kSingle), sample);
@@ -85,34 +103,7 @@ TEST(Oracle, SeesABodyInsideAnother) {
   EXPECT_EQ(Oracle(cell).touching_bodies(sample)[0], 0u);
 }
 
-// What the base is bolted beside is not queried.
-TEST(Workload, LeavesOutTheBaseAgainstTheTable) {
-  const Workload cell = make_paper_cell();
-  std::size_t left_out = 0;
-  for (const Body& body : cell.bodies) {
-    for (const Obstacle& obstacle : cell.obstacles) {
-      if (is_tested(body, obstacle)) continue;
-      ++left_out;
-      EXPECT_EQ(body.part.name, "base_link");
-      EXPECT_EQ(obstacle.part.name, "table");
-    }
-  }
-  EXPECT_EQ(left_out, 1u);
-}
-
-}  // namespace
-}  // namespace spherule
-
 // The peers in single precision, which promise no less than a miss: their radii are padded.
-#if defined(SPHERULE_BENCH_BULLET)
-#include "bench/checkers/bullet_sphere_checker.h"
-#endif
-
-namespace spherule {
-namespace {
-
-using test::Random;
-
 struct Peer {
   std::string name;
   std::unique_ptr<Checker> checker;
@@ -129,11 +120,9 @@ std::vector<Peer> peers_of(const Workload& workload) {
     peers.push_back({"spheres in front, instructions " + number,
                      make_flat_scan_checker(workload, FlatScan::kSpheresInFront, set)});
   }
-#if defined(SPHERULE_BENCH_BULLET)
   peers.push_back(
       {"Bullet's pair test", make_bullet_sphere_checker(workload, BulletQuery::kContactPairTest)});
   peers.push_back({"Bullet's trees", make_bullet_sphere_checker(workload, BulletQuery::kTrees)});
-#endif
   return peers;
 }
 

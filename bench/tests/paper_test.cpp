@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "base/files.h"
 #include "bench/checkers/fcl_mesh_checker.h"
-#include "bench/paper/equal_protrusion.h"
-#include "bench/paper/figures.h"
-#include "bench/paper/pictures.h"
-#include "bench/paper/representations.h"
+#include "bench/paper/paper.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_facts.h"
 #include "tests/support/shapes.h"
@@ -15,11 +11,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <memory>
 #include <numbers>
 #include <string>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -110,82 +103,6 @@ TEST(FclConvexChecker, AnswersAsMeshesOfTheSameParts) {
   EXPECT_LT(within, hits);
   EXPECT_THROW(make_fcl_convex_checker(cell, 0, {}), Error);
 }
-
-TEST(Picture, ShowsEveryTriangleWithAnAreaAndEverySphere) {
-  TriangleMesh mesh = make_cube(1.0);
-  mesh.triangles.emplace_back(0, 0, 1);
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("spherule-picture-" + std::to_string(::getpid()) + ".pov");
-  write_picture({{{1, 0, 0}, mesh, {}}, {{0, 0, 1}, {}, {{{0, 0, 1}, 0.5}, {{0, 0, 2}, 0.25}}}},
-                {1, 1, 1}, path);
-  const std::string text = read_file(path);
-  std::filesystem::remove(path);
-  const auto count = [&](const std::string& word) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-      ++found;
-    }
-    return found;
-  };
-  EXPECT_EQ(count("triangle {"), 12U);
-  EXPECT_EQ(count("sphere {"), 2U);
-  EXPECT_EQ(count("sphere { <0,0,2>, 0.25"), 1U);
-  EXPECT_THROW(write_picture({}, {1, 1, 1}, path), Error);
-}
-
-// Says the same of every configuration.
-class Constant : public Checker {
- public:
-  explicit Constant(std::uint8_t verdict) : verdict_(verdict) {}
-  void check(std::span<const ArmPositions> configurations,
-             std::span<std::uint8_t> verdicts) override {
-    for (std::size_t i = 0; i < configurations.size(); ++i) verdicts[i] = verdict_;
-  }
-
- private:
-  std::uint8_t verdict_;
-};
-
-TEST(Table1, CountsWhatIsMissedAndWhatIsExtra) {
-  Workload cell = make_paper_cell();
-  std::vector<ArmPositions> program;
-  std::vector<std::uint8_t> is_critical;
-  for (std::size_t i = 0; i < cell.program.size(); i += 101) {
-    program.push_back(cell.program[i]);
-    is_critical.push_back(cell.is_critical[i]);
-  }
-  cell.program = program;
-  cell.is_critical = is_critical;
-  std::vector<Representation> representations;
-  representations.push_back({"free", "none", false, std::make_unique<Constant>(0)});
-  representations.push_back({"hit", "all", true, std::make_unique<Constant>(1)});
-  representations.push_back({"meshes", "all", true, make_fcl_mesh_checker(cell, {})});
-  const auto rows = make_table1(cell, std::move(representations), {.rounds = 1});
-  const std::size_t truth = rows[0].whole.count.missed;
-  EXPECT_GT(truth, 10U);
-  EXPECT_EQ(rows[0].whole.queries, program.size());
-  EXPECT_EQ(rows[0].whole.count.collisions, 0U);
-  EXPECT_EQ(rows[1].whole.count.collisions, program.size());
-  EXPECT_EQ(rows[1].whole.count.missed, 0U);
-  EXPECT_EQ(rows[1].whole.count.extra, program.size() - truth);
-  EXPECT_EQ(rows[2].whole.count.collisions, truth);
-  EXPECT_EQ(rows[2].whole.count.missed + rows[2].whole.count.extra, 0U);
-  for (const Table1Row& row : rows) {
-    EXPECT_LT(row.critical.queries, row.whole.queries);
-    EXPECT_LE(row.critical.count.missed, row.whole.count.missed);
-    EXPECT_GT(row.whole.seconds, 0.0);
-  }
-  EXPECT_EQ(rows[0].whole.ratio, 1.0);
-}
-
-}  // namespace
-}  // namespace spherule
-
-// What is made of the paper's comparisons: the search for the fewest spheres at equal protrusion
-// and figure 2.
-
-namespace spherule {
-namespace {
 
 // A bar, whose inside is found in less time than that of a cube. As many spheres about its middle
 // as the reciprocal of the error, with the radius of the one around it, and the error and `more`

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "bench/scenes/work_cell_parts.h"
+#include "bench/scenes/work_cell.h"
 #include "bench/studies/refined_cover.h"
 #include "spheretree/build.h"
 #include "tests/support/fcl_solid.h"
@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 namespace spherule {
@@ -138,40 +137,6 @@ TEST(FclPair, EverySettingAnswersAlike) {
     named.engine->set_poses(touching);
     EXPECT_TRUE(named.engine->collides(0)) << named.name;
   }
-}
-
-// Remembers what it was queried.
-class Recorder : public Checker {
- public:
-  explicit Recorder(std::vector<double>& queried) : asked_(queried) {}
-  void check(std::span<const ArmPositions> configurations,
-             std::span<std::uint8_t> verdicts) override {
-    for (std::size_t i = 0; i < configurations.size(); ++i) {
-      asked_.push_back(configurations[i][0]);
-      verdicts[i] = 1;
-    }
-  }
-
- private:
-  std::vector<double>& asked_;
-};
-
-TEST(Turns, EveryCheckerIsAskedEverythingInOrder) {
-  std::vector<ArmPositions> configurations(2500);
-  std::vector<double> once;
-  for (std::size_t i = 0; i < configurations.size(); ++i) {
-    configurations[i][0] = static_cast<double>(i);
-    once.push_back(static_cast<double>(i));
-  }
-  std::vector<double> queried[2];
-  std::vector<std::unique_ptr<Checker>> checkers;
-  for (auto& of_checker : queried) checkers.push_back(std::make_unique<Recorder>(of_checker));
-  const auto times = time_in_turns(checkers, configurations, 2);
-  ASSERT_EQ(times.size(), 2u);
-  std::vector<double> thrice;  // two rounds and the one before
-  for (int round = 0; round < 3; ++round) thrice.insert(thrice.end(), once.begin(), once.end());
-  for (const auto& of_checker : queried) EXPECT_EQ(of_checker, thrice);
-  EXPECT_EQ(verdicts_of(*checkers[0], configurations), std::vector<std::uint8_t>(2500, 1));
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "bench/checkers/workload.h"
-#include "bench/scenes/program.h"
-#include "bench/scenes/work_cell_parts.h"
-#include "robot/model/kinematics.h"
-#include "tests/support/effort.h"
+#include "bench/scenes/work_cell.h"
 #include "tests/support/mesh_facts.h"
-#include "tests/support/random.h"
+#include "tests/support/shapes.h"
+#include "tests/support/solids.h"
 
 #include <gtest/gtest.h>
 
@@ -91,38 +89,6 @@ TEST(WorkCell, TheWorkpieceIsHollowThroughout) {
   }
 }
 
-TEST(WorkCell, SeamsLieWherePipesMeet) {
-  const TriangleMesh mesh = make_workpiece();
-  for (int pipe = 0; pipe < 3; ++pipe) {
-    for (const double angle : {0.0, 0.3, 0.8, 1.2, 0.5 * pi}) {
-      const SeamPoint seam = seam_point(pipe, angle);
-      for (const int of : {pipe, (pipe + 1) % 3}) {
-        const Eigen::Vector3d axis = pipe_axis(of);
-        EXPECT_NEAR((seam.point - seam.point.dot(axis) * axis).norm(), kPipeRadius, 1e-12);
-      }
-      // A millimetre off along the mean normal is outside, a millimetre deep is in the wall; chords
-      // of the mesh stay within 0.03 mm of the cylinder.
-      const Eigen::Vector3d normal = (seam.normal_a + seam.normal_b).normalized();
-      EXPECT_NEAR(winding_number(mesh, seam.point + 0.001 * normal), 0.0, 1e-6);
-      EXPECT_NEAR(winding_number(mesh, seam.point - 0.001 * normal), 1.0, 1e-6);
-    }
-  }
-}
-
-TEST(WorkCell, TheTorchEndsWithItsWire) {
-  const TriangleMesh torch = make_torch();
-  const Pose wire = flange_from_wire();
-  double furthest = -1.0;
-  double beside = 0.0;
-  for (const Eigen::Vector3d& vertex : torch.vertices) {
-    const Eigen::Vector3d in_wire = wire.inverse() * vertex;
-    furthest = std::max(furthest, in_wire.z());
-    if (in_wire.z() > -0.01) beside = std::max(beside, in_wire.head<2>().norm());
-  }
-  EXPECT_NEAR(furthest, 0.0, 1e-6);
-  EXPECT_NEAR(beside, 0.0006, 1e-6);
-}
-
 // FNV-1a over the grid steps.
 std::uint64_t hash(const std::vector<ArmPositions>& program) {
   std::uint64_t value = 14695981039346656037U;
@@ -142,73 +108,6 @@ TEST(Program, IsTheSameEverywhere) {
   ASSERT_EQ(is_critical.size(), kProgramSize);
   for (const ArmPositions& positions : program) EXPECT_EQ(on_joint_grid(positions), positions);
   EXPECT_EQ(hash(program), 0xc9a7e55f6321b085U);
-}
-
-TEST(Program, IsContinuousAndKeepsTheLimits) {
-  const RobotModel robot = make_robot();
-  const auto program = make_program(flange_from_wire()).configurations;
-  for (std::size_t i = 0; i < program.size(); ++i) {
-    for (std::size_t joint = 0; joint < program[i].size(); ++joint) {
-      EXPECT_GE(program[i][joint], robot.joints()[joint].lower);
-      EXPECT_LE(program[i][joint], robot.joints()[joint].upper);
-      if (i > 0) {
-        EXPECT_LT(std::abs(program[i][joint] - program[i - 1][joint]), 0.1) << i;
-      }
-    }
-  }
-}
-
-// There the end of the wire is within the standoff, the weave and the room at a crotch of the
-// metal.
-TEST(Program, TheWireIsAtTheMetalInTheCriticalSection) {
-  const RobotModel robot = make_robot();
-  const auto [program, is_critical] = make_program(flange_from_wire());
-  const Pose piece_from_world = world_from_workpiece().inverse();
-  std::vector<Pose> world_from_link;
-  std::size_t critical = 0;
-  for (std::size_t i = 0; i < program.size(); ++i) {
-    if (is_critical[i] == 0) continue;
-    ++critical;
-    forward_kinematics(robot, program[i], world_from_link);
-    const Eigen::Vector3d wire =
-        piece_from_world *
-        (world_from_link.back() * link6_from_flange() * flange_from_wire()).translation();
-    double gap = 1.0;  // from the nearest pipe's outer surface
-    for (int pipe = 0; pipe < 3; ++pipe) {
-      const Eigen::Vector3d axis = pipe_axis(pipe);
-      const double along = std::clamp(wire.dot(axis), 0.0, kPipeLength);
-      gap = std::min(gap, (wire - along * axis).norm() - kPipeRadius);
-    }
-    EXPECT_LT(gap, 0.03) << i;
-  }
-  EXPECT_GT(critical, kProgramSize / 2);
-  EXPECT_LT(critical, kProgramSize);
-}
-
-TEST(Program, ShufflingKeepsTheConfigurations) {
-  const auto program = make_program(flange_from_wire()).configurations;
-  auto mixed = shuffled(program, 7);
-  EXPECT_NE(mixed, program);
-  EXPECT_EQ(mixed, shuffled(program, 7));
-  auto sorted = program;
-  std::sort(sorted.begin(), sorted.end());
-  std::sort(mixed.begin(), mixed.end());
-  EXPECT_EQ(mixed, sorted);
-}
-
-TEST(InverseKinematics, BringsTheFlangeToTheTarget) {
-  const RobotModel robot = make_robot();
-  const ArmPositions reference{0.3, 0.2, 0.1, -0.4, 0.8, 0.5};
-  std::vector<Pose> links;
-  forward_kinematics(robot, reference, links);
-  const Pose target = links.back() * link6_from_flange();
-  const auto found = solve_inverse_kinematics(robot, target, {0.0, 0.0, 0.0, 0.0, 0.6, 0.0});
-  ASSERT_TRUE(found.has_value());
-  forward_kinematics(robot, *found, links);
-  const Pose reached = links.back() * link6_from_flange();
-  EXPECT_LT((reached.translation() - target.translation()).norm(), 1e-5);
-  EXPECT_LT((reached.matrix() - target.matrix()).norm(), 2e-5);
-  EXPECT_FALSE(solve_inverse_kinematics(robot, Pose::from_translation({5.0, 0.0, 0.0}), reference));
 }
 
 // The oracle on a part of the program; the benchmark queries it about all of it.
@@ -233,124 +132,89 @@ TEST(Program, HasTheWantedShareOfCollisions) {
   }
 }
 
-}  // namespace
-}  // namespace spherule
+// The makers of solids that the cell is built of.
 
-// Postures in closed form against forward kinematics.
+struct Case {
+  std::string name;
+  TriangleMesh mesh;
+  std::size_t triangles;
+  double volume;     // of the ideal solid
+  double tolerance;  // relative; chords cut corners
+};
 
-namespace spherule {
-namespace {
-
-using std::numbers::pi;
-
-Pose flange_at(const RobotModel& robot, const ArmPositions& positions) {
-  std::vector<Pose> links;
-  forward_kinematics(robot, positions, links);
-  return links.back() * link6_from_flange();
+std::vector<Case> cases() {
+  return {
+      {"box", make_box({1.0, 2.0, 3.0}), 12, 6.0, 1e-9},
+      {"cube", make_cube(2.0), 12, 8.0, 1e-9},
+      {"sphere", make_sphere(2.0, 64, 32), 2 * 64 * 31, 4.0 / 3.0 * pi * 8.0, 0.01},
+      {"torus", make_torus(3.0, 1.0, 64, 32), 2 * 64 * 32, 2.0 * pi * pi * 3.0, 0.01},
+      {"cylinder", make_cylinder(1.0, 4.0, 64), 4 * 64 - 4, 4.0 * pi, 0.01},
+      {"cone", make_cone(1.0, 3.0, 64), 2 * 64 - 2, pi, 0.01},
+      {"pipe", make_pipe(40.0, 34.0, 300.0, 81), 8 * 81, pi * (400.0 - 289.0) * 300.0, 0.01},
+      {"l_bracket", make_l_bracket(10.0, 4.0, 1.0), 20, 4.0 * 19.0, 1e-9},
+      {"plate", make_plate_with_holes({20.0, 12.0, 2.0}, 4, 3, 1.0, 32),
+       // Each face has corners - 2 + 2 holes triangles; each side of a loop has two more.
+       2 * (4 + 12 * 32 - 2 + 2 * 12) + 2 * (4 + 12 * 32), 2.0 * (240.0 - 12.0 * pi / 4.0), 0.01},
+  };
 }
 
-// The largest difference of an angle, whole turns left out.
-double difference(const ArmPositions& a, const ArmPositions& b) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    most = std::max(most, std::abs(std::remainder(a[i] - b[i], 2.0 * pi)));
-  }
-  return most;
-}
-
-void expect_reached(const RobotModel& robot, const Pose& target,
-                    const std::vector<ArmPositions>& postures) {
-  for (const ArmPositions& posture : postures) {
-    const Pose reached = flange_at(robot, posture);
-    EXPECT_LT((reached.translation() - target.translation()).norm(), 1e-6);
-    EXPECT_LT((reached.matrix() - target.matrix()).cwiseAbs().maxCoeff(), 1e-6);
-    for (const double angle : posture) EXPECT_LE(std::abs(angle), pi);
-  }
-}
-
-// Two for the wrist where the arm is forwards or backwards alone; mostly all eight.
-TEST(SphericalWrist, FindsEveryPosture) {
-  const RobotModel robot = make_robot();
-  test::Random random(3);
-  std::size_t all = 0;
-  const int cases = test::effort(5000, 500);
-  for (int i = 0; i < cases; ++i) {
-    ArmPositions positions;
-    for (double& position : positions) position = random.between(-pi, pi);
-    // Away from where two postures fall together.
-    if (std::abs(std::sin(positions[4])) < 1e-3) continue;
-    const Pose target = flange_at(robot, positions);
-    const auto postures = inverse_kinematics_branches(robot, target);
-    expect_reached(robot, target, postures);
-    EXPECT_TRUE(std::any_of(postures.begin(), postures.end(), [&](const ArmPositions& posture) {
-      return difference(posture, positions) < 1e-6;
-    })) << i;
-    for (std::size_t a = 0; a < postures.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) EXPECT_GT(difference(postures[a], postures[b]), 1e-6);
-    }
-    EXPECT_TRUE(postures.size() == 4 || postures.size() == 8) << postures.size();
-    all += postures.size() == 8 ? 1 : 0;
-  }
-  EXPECT_GT(all, static_cast<std::size_t>(cases) / 4);
-  EXPECT_LT(all, static_cast<std::size_t>(cases));
-}
-
-TEST(SphericalWrist, ReachesPlacesWherePosturesFallTogether) {
-  const RobotModel robot = make_robot();
-  const double straight = -std::atan2(1.38, 0.15);  // of the elbow
-  for (const ArmPositions& positions :
-       {ArmPositions{0.4, 0.3, -0.2, 1.1, 0.0, 0.7},          // the wrist stretched
-        ArmPositions{0.4, 0.3, -0.2, 1.1, pi, 0.7},           // and folded
-        ArmPositions{-1.0, 0.6, straight, 0.3, 0.9, -2.0},    // the arm stretched
-        ArmPositions{-1.0, 0.6, straight, 0.0, 0.0, 0.0}}) {  // and the wrist
-    const Pose target = flange_at(robot, positions);
-    const auto postures = inverse_kinematics_branches(robot, target);
-    EXPECT_GE(postures.size(), 1u);
-    expect_reached(robot, target, postures);
+TEST(Shapes, AreClosedAndFaceOutwards) {
+  for (const Case& c : cases()) {
+    EXPECT_EQ(c.mesh.triangles.size(), c.triangles) << c.name;
+    EXPECT_TRUE(is_closed(c.mesh)) << c.name;
+    EXPECT_NEAR(signed_volume(c.mesh) / c.volume, 1.0, c.tolerance) << c.name;
+    EXPECT_EQ(component_points(c.mesh).size(), 1u) << c.name;
+    for (const Eigen::Vector3d& vertex : c.mesh.vertices) EXPECT_TRUE(vertex.allFinite()) << c.name;
   }
 }
 
-TEST(SphericalWrist, FindsNothingOutOfReach) {
-  const RobotModel robot = make_robot();
-  EXPECT_TRUE(inverse_kinematics_branches(robot, Pose::from_translation({5.0, 0.0, 0.0})).empty());
-  EXPECT_TRUE(inverse_kinematics_branches(robot, Pose::from_translation({0.34, 0.0, 0.7})).empty());
+double area(const Loop& outer, const std::vector<Loop>& holes) {
+  Loop points = outer;
+  for (const Loop& hole : holes) points.insert(points.end(), hole.begin(), hole.end());
+  double twice = 0.0;
+  for (const Eigen::Vector3i& t : triangulate(outer, holes)) {
+    const Eigen::Vector2d a = points[static_cast<std::size_t>(t[0])];
+    const Eigen::Vector2d ab = points[static_cast<std::size_t>(t[1])] - a;
+    const Eigen::Vector2d ac = points[static_cast<std::size_t>(t[2])] - a;
+    const double cross = ab.x() * ac.y() - ab.y() * ac.x();
+    EXPECT_GT(cross, 0.0);
+    twice += cross;
+  }
+  return 0.5 * twice;
 }
 
-TEST(SphericalWrist, RefusesOtherRobots) {
-  EXPECT_THROW(inverse_kinematics_branches(RobotModel(), Pose()), Error);
-  const RobotModel usual = make_robot();
-  RobotModel robot("base");
-  std::string parent = "base";
-  for (int i = 0; i < kJoints; ++i) {
-    const Joint& joint = usual.joints()[static_cast<std::size_t>(i)];
-    Joint moved{.name = joint.name,
-                .type = joint.type,
-                .parent_from_joint = joint.parent_from_joint,
-                .axis = joint.axis,
-                .lower = joint.lower,
-                .upper = joint.upper};
-    if (i == 5) moved.parent_from_joint = Pose::from_translation({0.0, 0.0, 0.1});
-    const std::string link = "link_" + std::to_string(i);
-    robot.add_link(link, parent, moved);
-    parent = link;
-  }
-  EXPECT_THROW(inverse_kinematics_branches(robot, Pose()), Error);
+// All triangles face up and their areas add up: they neither overlap nor leave a hole uncut.
+TEST(Polygon, TrianglesFillTheOutlineLessItsHoles) {
+  const auto disc = [](double radius, int sides) {
+    return 0.5 * sides * radius * radius * std::sin(2.0 * pi / sides);
+  };
+  const Loop outline = belt({0.0, 0.0}, 3.0, {8.0, 1.0}, 2.0, 10);
+  const double whole = area(outline, {});
+  std::vector<Loop> holes = screw_holes({0.0, 0.0}, 2.0, 8, 0.3, 6);
+  EXPECT_NEAR(area(outline, holes), whole - 8 * disc(0.3, 6), 1e-6);
+  holes.push_back(circle({0.0, 0.0}, 1.0, 24));
+  holes.push_back(circle({8.0, 1.0}, 1.5, 7, 0.3));
+  EXPECT_NEAR(area(outline, holes), whole - 8 * disc(0.3, 6) - disc(1.0, 24) - disc(1.5, 7), 1e-6);
+  EXPECT_NEAR(area(rectangle({1.0, 2.0}, {4.0, 6.0}, 1.0, 16), {}), 24.0 - 4.0 + pi, 0.01);
 }
 
-TEST(SphericalWrist, LimitsIncludeTheirEnds) {
-  const RobotModel robot = make_robot();
-  ArmPositions positions{};
-  EXPECT_TRUE(is_within_limits(robot, positions));
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Joint& joint = robot.joints()[i];
-    for (const double limit : {joint.lower, joint.upper}) {
-      positions[i] = limit;
-      EXPECT_TRUE(is_within_limits(robot, positions));
-      positions[i] = std::nextafter(limit, 2.0 * limit);
-      EXPECT_FALSE(is_within_limits(robot, positions));
-    }
-    positions[i] = 0.0;
-  }
+TEST(Polygon, WrongLoopsAreRefused) {
+  const Loop square = rectangle({0.0, 0.0}, {2.0, 2.0});
+  EXPECT_THROW(triangulate({square.rbegin(), square.rend()}, {}), Error);
+  EXPECT_THROW(triangulate(square, {circle({5.0, 0.0}, 0.5, 8)}), Error);
+}
+
+TEST(Solids, RefiningKeepsTheSolid) {
+  TriangleMesh mesh = make_l_bracket(10.0, 4.0, 1.0);
+  const double volume = signed_volume(mesh);
+  refine_to(mesh, 500);
+  EXPECT_EQ(mesh.triangles.size(), 500u);
+  EXPECT_TRUE(is_closed(mesh));
+  EXPECT_NEAR(signed_volume(mesh), volume, 1e-9);
+  EXPECT_THROW(refine_to(mesh, 501), Error);
+  EXPECT_THROW(refine_to(mesh, 498), Error);
+  mesh.triangles.pop_back();
+  EXPECT_THROW(refine_to(mesh, 1999), Error);
 }
 
 }  // namespace

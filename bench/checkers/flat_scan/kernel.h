@@ -68,10 +68,14 @@ struct Scratch {
 // Whether two spheres touch. Radii have to be padded by what single precision costs.
 using Check = bool (*)(const Problem& problem, const double* configuration, const Scratch& scratch);
 
-bool check_portable(const Problem& problem, const double* configuration, const Scratch& scratch);
-#if defined(SPHERULE_X86_KERNELS)
-bool check_avx2(const Problem& problem, const double* configuration, const Scratch& scratch);
-bool check_avx512(const Problem& problem, const double* configuration, const Scratch& scratch);
-#endif
+namespace portable {
+bool check(const Problem& problem, const double* configuration, const Scratch& scratch);
+}
+namespace avx2 {
+bool check(const Problem& problem, const double* configuration, const Scratch& scratch);
+}
+namespace avx512 {
+bool check(const Problem& problem, const double* configuration, const Scratch& scratch);
+}
 
 }  // namespace spherule::flat_scan
