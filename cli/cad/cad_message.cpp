@@ -5,89 +5,63 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace spherule {
 namespace {
 
 using Message = nlohmann::json;
-using Bytes = std::vector<std::uint8_t>;
 
-// The coordinates of points, or the indices of triangles, as they stand in memory: both ends run on
-// the same machine.
+// Values as they stand in memory: both ends run on the same machine.
 template <typename Row>
-Message rows(const std::vector<Row>& values) {
-  static_assert(sizeof(Row) == 3 * sizeof(typename Row::Scalar));
-  Bytes bytes(values.size() * sizeof(Row));
-  if (!values.empty()) std::memcpy(bytes.data(), values.data()->data(), bytes.size());
+Message rows(std::span<const Row> values) {
+  std::vector<std::uint8_t> bytes(values.size_bytes());
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
   return Message::binary(std::move(bytes));
 }
 
 template <typename Row>
-std::vector<Row> rows_of(const Message& message) {
-  const Bytes& bytes = message.get_binary();
+void get_rows(const Message& message, std::vector<Row>& values) {
+  const std::vector<std::uint8_t>& bytes = message.get_binary();
   if (bytes.size() % sizeof(Row) != 0) throw std::runtime_error("rows are not whole");
-  std::vector<Row> values(bytes.size() / sizeof(Row));
+  values.resize(bytes.size() / sizeof(Row));
   if (!values.empty()) std::memcpy(values.data()->data(), bytes.data(), bytes.size());
-  return values;
 }
 
-Message to_message(const CadPart& part) {
-  Message unproved = Message::array();
-  for (const UnprovedFace& face : part.unproved) unproved.push_back({face.name, face.reason});
-  return {{"vertices", rows(part.mesh.vertices)},
-          {"triangles", rows(part.mesh.triangles)},
-          {"vertex_error", part.mesh.vertex_error},
-          {"chord_error", part.chord_error},
-          {"asked", part.asked},
-          {"reached", part.reached},
-          {"tolerance", part.tolerance},
-          {"proved", part.proved},
-          {"unproved", std::move(unproved)},
-          {"faces", part.faces},
-          {"free_edges", part.free_edges},
-          {"stated_unit", part.stated_unit}};
-}
+}  // namespace
 
-CadPart part_of(const Message& message) {
-  CadPart part;
-  part.mesh.vertices = rows_of<Eigen::Vector3d>(message.at("vertices"));
-  part.mesh.triangles = rows_of<Eigen::Vector3i>(message.at("triangles"));
-  part.mesh.vertex_error = message.at("vertex_error").get<double>();
-  part.chord_error = message.at("chord_error").get<double>();
-  part.asked = message.at("asked").get<double>();
-  part.reached = message.at("reached").get<double>();
-  part.tolerance = message.at("tolerance").get<double>();
-  part.proved = message.at("proved").get<bool>();
-  for (const Message& face : message.at("unproved")) {
-    part.unproved.push_back({face.at(0).get<std::string>(), face.at(1).get<std::string>()});
-  }
-  part.faces = message.at("faces").get<std::size_t>();
-  part.free_edges = message.at("free_edges").get<std::size_t>();
-  part.stated_unit = message.at("stated_unit").get<std::string>();
-  return part;
+// Found by nlohmann-json, by their names.
+static void to_json(Message& message, const TriangleMesh& mesh) {
+  message = {{"vertices", rows(std::span(mesh.vertices))},
+             {"triangles", rows(std::span(mesh.triangles))},
+             {"vertex_error", mesh.vertex_error}};
 }
-
-Message to_message(const BodyCopy& copy) {
-  const Eigen::Quaterniond q = copy.pose.rotation();
+static void from_json(const Message& message, TriangleMesh& mesh) {
+  get_rows(message.at("vertices"), mesh.vertices);
+  get_rows(message.at("triangles"), mesh.triangles);
+  message.at("vertex_error").get_to(mesh.vertex_error);
+}
+static void to_json(Message& message, const BodyCopy& copy) {
+  const Eigen::Vector4d q = copy.pose.rotation().coeffs();
   const Eigen::Vector3d& t = copy.pose.translation();
-  return {{"of", copy.of},
-          {"rotation", {q.w(), q.x(), q.y(), q.z()}},
-          {"translation", {t.x(), t.y(), t.z()}}};
+  message = {copy.of, q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()};
 }
+static void from_json(const Message& message, BodyCopy& copy) {
+  const auto [of, x, y, z, w, tx, ty, tz] =
+      message
+          .get<std::tuple<std::size_t, double, double, double, double, double, double, double>>();
+  copy = {of, Pose(Eigen::Quaterniond(w, x, y, z), {tx, ty, tz})};
+}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UnprovedFace, name, reason)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CadPart, mesh, chord_error, asked, reached, tolerance, proved,
+                                   unproved, faces, free_edges, stated_unit)
 
-BodyCopy copy_of(const Message& message) {
-  const auto q = message.at("rotation").get<std::vector<double>>();
-  const auto t = message.at("translation").get<std::vector<double>>();
-  return {.of = message.at("of").get<std::size_t>(),
-          .pose = Pose(Eigen::Quaterniond(q.at(0), q.at(1), q.at(2), q.at(3)),
-                       {t.at(0), t.at(1), t.at(2)})};
-}
+namespace {
 
 std::string to_bytes(const Message& message) {
   std::string bytes;
@@ -100,9 +74,8 @@ std::string to_bytes(const Message& message) {
 std::string packed(std::span<const CadBody> bodies) {
   Message message = Message::array();
   for (const CadBody& body : bodies) {
-    Message one = {{"name", body.name}, {"part", to_message(body.part)}};
-    if (body.copy) one["copy"] = to_message(*body.copy);
-    message.push_back(std::move(one));
+    Message& one = message.emplace_back(Message{{"name", body.name}, {"part", body.part}});
+    if (body.copy) one["copy"] = *body.copy;
   }
   return to_bytes({{"bodies", std::move(message)}});
 }
@@ -118,8 +91,8 @@ std::vector<CadBody> unpacked(std::string_view bytes) {
   }
   std::vector<CadBody> bodies;
   for (const Message& one : message.at("bodies")) {
-    CadBody body{.name = one.at("name").get<std::string>(), .part = part_of(one.at("part"))};
-    if (one.contains("copy")) body.copy = copy_of(one.at("copy"));
+    CadBody body{.name = one.at("name").get<std::string>(), .part = one.at("part").get<CadPart>()};
+    if (one.contains("copy")) body.copy = one.at("copy").get<BodyCopy>();
     bodies.push_back(std::move(body));
   }
   return bodies;

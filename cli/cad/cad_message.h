@@ -10,8 +10,14 @@
 
 namespace spherule {
 
-// What the program that reads CAD files (cad_reader.cpp) sends to the command (cad_process.h), as
-// CBOR: the bodies that were read, every number exactly, or the error that ended the reading.
+// The command line of the program that reads CAD files (cad_reader.cpp): which function to run
+// ("part", "bodies"), the file, scale, chord error and angle, and how many seconds of processor
+// time it may take at most.
+inline constexpr int kCadArguments = 7;  // with the name of the program
+
+// The descriptor to which it sends its answer to the command (cad_process.h), as CBOR: the bodies
+// that were read, every number exactly, or the error that ended the reading.
+inline constexpr int kCadAnswer = 3;
 
 std::string packed(std::span<const CadBody> bodies);
 std::string packed_error(const std::string& subject, const std::string& reason);

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/text.h"
-#include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
 
 #include <array>

@@ -2,7 +2,6 @@
 // The program that reads one CAD file for the command (cad_process.h).
 #include "base/error.h"
 #include "base/text.h"
-#include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
 #include "io/cad/cad_file.h"
 

@@ -11,193 +11,90 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstdint>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
 namespace spherule {
 namespace {
 
-const CLI::App& inner_command(const CLI::App& around, const std::string& name) {
-  std::vector<std::string> known;
-  for (const CLI::App* inner : around.get_subcommands({})) {
-    if (inner->get_name() == name && !name.empty()) return *inner;
-    known.push_back(inner->get_name());
-  }
-  throw Error("help", "there is no command '" + name + "'" + internal::did_you_mean(name, known));
-}
-
-void print_help(const CLI::App& app, const std::vector<std::string>& names) {
+const CLI::App& command_named(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* command = &app;
-  std::string full_name = app.get_name();
   for (const std::string& name : names) {
-    command = &inner_command(*command, name);
-    full_name += " " + name;
+    const std::vector<const CLI::App*> inner = command->get_subcommands({});
+    const auto found =
+        std::ranges::find_if(inner, [&](const CLI::App* one) { return one->get_name() == name; });
+    if (found == inner.end()) {
+      const auto name_of = [](const CLI::App* one) { return one->get_name(); };
+      throw Error("help", "there is no command '" + name + "'" +
+                              internal::did_you_mean(name, inner, name_of));
+    }
+    command = *found;
   }
-  // App::help() prints that of the command that runs.
-  std::cout << command->get_formatter()->make_help(command, full_name, CLI::AppFormatMode::Normal);
+  return *command;
 }
 
-// Text of a manual page, in the macros of man(7), where no character of it means anything to roff.
-std::string roff(const std::string& text) {
-  std::string result;
-  bool starts_line = true;
-  for (const char c : text) {
-    if (starts_line && (c == '.' || c == '\'')) result += "\\&";
-    starts_line = c == '\n';
-    switch (c) {
-      case '\\':
-        result += "\\e";
-        break;
-      case '-':
-        result += "\\-";
-        break;
-      case '`':
-        result += "\\(ga";
-        break;
-      case '\'':
-        result += "\\(aq";
-        break;
-      case '^':
-        result += "\\(ha";
-        break;
-      case '~':
-        result += "\\(ti";
-        break;
-      default:
-        result += c;
-    }
+std::string full_name(const CLI::App& command, const char* between) {
+  const CLI::App* around = command.get_parent();
+  return around == nullptr ? command.get_name()
+                           : full_name(*around, between) + between + command.get_name();
+}
+
+// App::help() has that of the command that runs.
+std::string help_of(const CLI::App& command) {
+  return command.get_formatter()->make_help(&command, full_name(command, " "),
+                                            CLI::AppFormatMode::Normal);
+}
+
+std::string in_capitals(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+// A line of a manual page, in which no character means anything to roff.
+std::string roff(const std::string& line) {
+  std::string result = line.starts_with('.') || line.starts_with('\'') ? "\\&" : "";
+  for (const char c : line) {
+    static const std::map<char, const char*> kNames = {{'\\', "\\e"},  {'-', "\\-"},
+                                                       {'`', "\\(ga"}, {'\'', "\\(aq"},
+                                                       {'^', "\\(ha"}, {'~', "\\(ti"}};
+    const auto name = kNames.find(c);
+    result += name == kNames.end() ? std::string(1, c) : name->second;
   }
   return result;
 }
 
-std::string bold(const std::string& text) {
-  return "\\fB" + roff(text) + "\\fR";
-}
-
-std::string italic(const std::string& text) {
-  return "\\fI" + roff(text) + "\\fR";
-}
-
-// Filled anyway, in lines that a person can read.
-std::string paragraph(const std::string& text) {
-  return roff(wrapped(text, 72)) + "\n";
-}
-
-std::string with_blanks(const std::vector<std::string>& path, char blank) {
-  std::string name;
-  for (const std::string& part : path) name += (name.empty() ? "" : std::string(1, blank)) + part;
-  return name;
-}
-
-// The day that the page is of; builds that are to be repeatable set SOURCE_DATE_EPOCH.
-std::string today() {
-  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-  std::time_t now = std::time(nullptr);
-  if (epoch != nullptr) {
-    const std::optional<std::int64_t> seconds = internal::whole_number(epoch);
-    if (!seconds) {
-      throw Error("SOURCE_DATE_EPOCH", internal::in_quotes(epoch) + " is no number of seconds");
-    }
-    now = static_cast<std::time_t>(*seconds);
+// The help of a command in the macros of man(7): its headings, and what is below them as it stands.
+std::string manual_page(const CLI::App& command) {
+  const std::string name = full_name(command, "-");
+  const std::string& summary = command.get_description();
+  std::string help = help_of(command).substr(summary.size() + 1);
+  help.insert(help.size() - command.get_footer().size() - 1, "Notes:\n");
+  std::string page = ".\\\" Made by `spherule manual` from the help of its commands.\n.TH " +
+                     roff(in_capitals(name)) +
+                     " 1 \"" SPHERULE_DATE "\" \"spherule " SPHERULE_VERSION
+                     "\" \"User Commands\"\n.SH NAME\n" +
+                     roff(name) + " \\- " + roff(summary) + "\n.SH SYNOPSIS\n.nf\n";
+  const std::string usage = "Usage: ";
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(usage)) line.erase(0, usage.size());
+    const bool is_heading = line.ends_with(':') && !line.starts_with(' ');
+    if (is_heading) line = ".fi\n.SH " + in_capitals(line.substr(0, line.size() - 1)) + "\n.nf";
+    if (!line.empty()) page += (is_heading ? line : roff(line)) + "\n";
   }
-  const std::tm* day = std::gmtime(&now);
-  if (day == nullptr) throw Error("SOURCE_DATE_EPOCH", "is not in a year that can be written");
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d", day);
-  return text.data();
+  return page + ".fi\n";
 }
 
-std::string synopsis(const CommandSpecification& command, const std::vector<std::string>& path) {
-  std::string text = bold(with_blanks(path, ' '));
-  if (!command.options.empty()) text += " [" + italic("options") + "]";
-  for (const OptionSpecification& argument : command.arguments) {
-    const std::string name = italic(argument.names.front()) + (argument.is_repeatable ? "..." : "");
-    text += argument.is_required ? " " + name : " [" + name + "]";
-  }
-  if (!command.commands.empty()) text += " " + italic("command") + " ...";
-  return text + "\n";
-}
-
-std::string item(const OptionSpecification& option, bool is_argument) {
-  std::string text = ".TP\n";
-  for (std::size_t i = 0; i < option.names.size(); ++i) {
-    text += (i > 0 ? ", " : "") + (is_argument ? italic : bold)(option.names[i]);
-  }
-  if (!option.value.empty()) text += " " + italic(option.value);
-  if (option.is_repeatable) text += " ...";
-  return text + "\n" + paragraph(full_description(option));
-}
-
-std::string items(const char* section, const std::vector<OptionSpecification>& options,
-                  bool are_arguments) {
-  if (options.empty()) return {};
-  std::string text = std::string(".SH ") + section + "\n";
-  for (const OptionSpecification& option : options) text += item(option, are_arguments);
-  return text;
-}
-
-// The footer of the help: text, exit codes and examples in sections of their own.
-std::string page(const CommandSpecification& command, const std::vector<std::string>& path) {
-  const std::string name = with_blanks(path, '-');
-  std::string title = name;
-  std::transform(title.begin(), title.end(), title.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const FooterParts footer = parts_of(command.footer);
-  std::string text = ".\\\" Made by `spherule manual` from what its commands say of themselves.\n";
-  text += ".TH " + roff(title) + " 1 \"" + today() + "\" \"spherule " SPHERULE_VERSION +
-          "\" \"User Commands\"\n";
-  text += ".SH NAME\n" + roff(name) + " \\- " + roff(command.summary) + "\n";
-  text += ".SH SYNOPSIS\n" + synopsis(command, path);
-  if (!footer.text.empty()) text += ".SH DESCRIPTION\n" + paragraph(footer.text);
-  text += items("ARGUMENTS", command.arguments, true) + items("OPTIONS", command.options, false);
-  if (!command.commands.empty()) {
-    text += ".SH COMMANDS\n";
-    for (const CommandSpecification& inner : command.commands) {
-      text += ".TP\n" + bold(name + "-" + inner.name) + "(1)\n" + paragraph(inner.summary);
-    }
-  }
-  if (!footer.exit_codes.empty()) text += ".SH EXIT STATUS\n" + paragraph(footer.exit_codes);
-  if (!footer.examples.empty()) {
-    text += ".SH EXAMPLES\n.nf\n" + roff(footer.examples) + ".fi\n";
-  }
-  if (path.size() > 1) {
-    const std::vector<std::string> around(path.begin(), path.end() - 1);
-    text += ".SH SEE ALSO\n" + bold(with_blanks(around, '-')) + "(1)\n";
-  }
-  return text;
-}
-
-void write_pages(const CommandSpecification& command, std::vector<std::string> path,
-                 const std::filesystem::path& folder) {
-  write_file_atomically(folder / (with_blanks(path, '-') + ".1"), page(command, path));
-  path.emplace_back();
-  for (const CommandSpecification& inner : command.commands) {
-    path.back() = inner.name;
-    write_pages(inner, path, folder);
-  }
-}
-
-void print_page(const CommandSpecification& all, const std::vector<std::string>& names) {
-  const CommandSpecification* command = &all;
-  std::vector<std::string> path = {all.name};
-  for (const std::string& name : names) {
-    command = find_command(*command, name);
-    if (command == nullptr) throw Error("manual", "there is no command '" + name + "'");
-    path.push_back(name);
-  }
-  std::cout << page(*command, path);
+void write_pages(const CLI::App& command, const std::filesystem::path& folder) {
+  write_file_atomically(folder / (full_name(command, "-") + ".1"), manual_page(command));
+  for (const CLI::App* inner : command.get_subcommands({})) write_pages(*inner, folder);
 }
 
 }  // namespace
@@ -209,7 +106,7 @@ void add_help(CLI::App& app, int& exit_code) {
       ->type_name(kCommand);
   command->footer(to_text({.text = "", .exit_codes = "0 done", .examples = {"spherule help fit"}}));
   command->callback([&app, names, &exit_code] {
-    print_help(app, *names);
+    std::cout << help_of(command_named(app, *names));
     exit_code = kYes;
   });
 }
@@ -226,12 +123,11 @@ void add_manual(CLI::App& app, int& exit_code) {
                            .exit_codes = "0 done",
                            .examples = {"spherule manual fit > fit.1", "spherule manual -o ."}}));
   command->callback([&app, names, folder, &exit_code] {
-    const CommandSpecification all = specification(app);
     if (folder->empty()) {
-      print_page(all, *names);
+      std::cout << manual_page(command_named(app, *names));
     } else {
       if (!std::filesystem::is_directory(*folder)) throw Error(*folder, "no such folder");
-      write_uninterrupted([&] { write_pages(all, {all.name}, *folder); });
+      write_uninterrupted([&] { write_pages(app, *folder); });
     }
     exit_code = kYes;
   });

@@ -29,6 +29,12 @@
 namespace spherule {
 namespace {
 
+// Of longer trajectories a page shows so many configurations, evenly spread, the last one included;
+// each step between two of them has the worst verdict of what is in it, and its first contact.
+constexpr std::size_t kMostShownConfigurations = 10000;
+// Of more contacts at one point a page shows so many, the deepest.
+constexpr std::size_t kMostShownContacts = 8;
+
 // How far triangles for curved obstacles may lie outside, as a share of their size.
 constexpr double kChordShare = 0.01;
 // The least side of the square that stands for a half-space, in metres.
@@ -40,25 +46,22 @@ double size_of(const Primitive& primitive) {
   return 1.0;
 }
 
+// What stands in a scene, in the world: meshes and primitives as triangles, points, spheres and
+// trees as spheres, and what is attached to links of the robot, in their frames. Of a half-space,
+// a square of its surface about the other obstacles. Parts have the names of the scene. Throws
+// Error as link_mesh() and the readers do.
 class Obstacles {
  public:
   explicit Obstacles(const RobotModel& robot) : robot_(robot) {}
 
   std::vector<ViewItem> run(const SceneDescription& scene) && {
     for (const SceneObstacle& obstacle : scene.obstacles) {
-      place(obstacle.name, -1, obstacle.world_from_shape);
-      std::visit([this](const auto& source) { add(source); }, obstacle.shape);
-    }
-    for (const SceneObstacle& obstacle : scene.obstacles) {
-      const auto* primitive = std::get_if<Primitive>(&obstacle.shape);
-      if (primitive == nullptr || !std::holds_alternative<HalfSpace>(*primitive)) continue;
-      place(obstacle.name, -1, obstacle.world_from_shape);
-      add_square();
+      add(obstacle.name, -1, obstacle.world_from_shape, obstacle.shape);
     }
     for (const SceneAttachment& object : scene.attached) {
-      place(object.name, robot_.find_link(object.link), object.link_from_object);
-      std::visit([this](const auto& source) { add(source); }, object.shape);
+      add(object.name, robot_.find_link(object.link), object.link_from_object, object.shape);
     }
+    for (const auto& [name, pose] : half_spaces_) add_square(name, pose);
     std::vector<ViewItem> items;
     if (!meshes_.parts.empty()) items.push_back(std::move(meshes_));
     if (!spheres_.parts.empty()) items.push_back(std::move(spheres_));
@@ -66,16 +69,18 @@ class Obstacles {
   }
 
  private:
-  void place(const std::string& name, int link, const Pose& pose) {
+  template <class Shape>
+  void add(const std::string& name, int link, const Pose& pose, const Shape& shape) {
     name_ = name;
     link_ = link;
     pose_ = pose;
+    std::visit([this](const auto& source) { add(source); }, shape);
   }
-
   void add(const MeshFile& file) { add_shape(file, {}); }
   void add(const Primitive& primitive) {
-    if (std::holds_alternative<HalfSpace>(primitive)) return;  // when all else is known
-    if (const auto* sphere = std::get_if<SolidSphere>(&primitive)) {
+    if (std::holds_alternative<HalfSpace>(primitive)) {
+      half_spaces_.emplace_back(name_, pose_);
+    } else if (const auto* sphere = std::get_if<SolidSphere>(&primitive)) {
       add_spheres(std::vector<Sphere>{{Eigen::Vector3d::Zero(), sphere->radius}});
     } else {
       add_shape(primitive, {.chord_error = kChordShare * size_of(primitive)});
@@ -107,49 +112,58 @@ class Obstacles {
   }
 
   // The surface of a half-space below and around the rest.
-  void add_square() {
+  void add_square(const std::string& name, const Pose& pose) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double half = 0.5 * kLeastSide;
     if (!box_.isEmpty()) {
-      middle = pose_.inverse() * Eigen::Vector3d(box_.center());
+      middle = pose.inverse() * Eigen::Vector3d(box_.center());
       half = std::max(half, 0.75 * box_.diagonal().norm());
     }
     TriangleMesh square;
     for (const auto& [x, y] :
          {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
-      square.vertices.push_back(pose_ *
+      square.vertices.push_back(pose *
                                 Eigen::Vector3d(middle.x() + half * x, middle.y() + half * y, 0.0));
     }
     square.triangles = {{0, 1, 2}, {0, 2, 3}};
-    meshes_.parts.push_back({std::move(square), link_, name_, true});
+    meshes_.parts.push_back({std::move(square), -1, name, true});
   }
 
   const RobotModel& robot_;
   ViewItem meshes_{.name = "obstacles and tools", .parts = {}};
   ViewItem spheres_{.name = "obstacles and tools of spheres", .parts = {}};
-  Eigen::AlignedBox3d box_{};  // of the obstacles
-  std::string name_{};         // of what is added, its link and its place
+  std::vector<std::pair<std::string, Pose>> half_spaces_{};  // drawn when all else is known
+  Eigen::AlignedBox3d box_{};                                // of the obstacles
+  std::string name_{};  // of what is added, its link and its place
   int link_ = -1;
   Pose pose_{};
 };
 
 std::vector<float> floats_of(std::span<const double> numbers) {
-  std::vector<float> floats;
-  floats.reserve(numbers.size());
-  for (const double number : numbers) floats.push_back(static_cast<float>(number));
+  std::vector<float> floats(numbers.size());
+  std::ranges::transform(numbers, floats.begin(), [](double x) { return static_cast<float>(x); });
   return floats;
 }
 
 // The configurations that are shown, by their indices.
-std::vector<std::size_t> shown_of(std::size_t count, std::size_t most) {
-  const std::size_t gaps = std::max<std::size_t>(most, 2) - 1;
-  const std::size_t step = count < 2 ? 1 : (count - 1 + gaps - 1) / gaps;
+std::vector<std::size_t> shown_of(std::size_t count) {
+  constexpr std::size_t kGaps = kMostShownConfigurations - 1;
+  const std::size_t step = count < 2 ? 1 : (count - 1 + kGaps - 1) / kGaps;
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < count; i += step) shown.push_back(i);
   if (shown.back() != count - 1) shown.push_back(count - 1);
   return shown;
 }
 
+// A trajectory as the page takes it, `report` with the verdicts of it. Of n shown configurations:
+// `lines` of the file, `positions`, `clearance` (its lower bound, metres) and `nearest` (two
+// indices into `bodies`), as 32-bit words, and `skipped`, whether two links were anywhere left out
+// of a clearance because they are proved free there; `verdicts`, a letter for each configuration,
+// or for each step from one to the next where motions were proved: f free, c collision, u not
+// proved, l outside the joint limits where these are enforced. `points` are what was examined and
+// touches: "at" on the scale of the shown configurations, line, next line (0 for a configuration of
+// the file), fraction, "configuration" unless it is a shown one, and contacts, 12 floats each: the
+// two bodies, depth, point, and of either body link, tree and sphere, -1 for what has none.
 class Recording {
  public:
   Recording(const RobotChecker& checker, const Trajectory& trajectory, const CheckReport& report,
@@ -158,7 +172,7 @@ class Recording {
         trajectory_(trajectory),
         report_(report),
         view_(view),
-        shown_(shown_of(trajectory.size(), view.most_configurations)),
+        shown_(shown_of(trajectory.size())),
         clearances_(shown_.size()),
         contacts_(shown_.size()),
         scratches_(make_scratches(checker, view.threads)) {}
@@ -234,11 +248,7 @@ class Recording {
         json["points"].push_back(
             Json::array({j, trajectory_.lines[begin], 0, 0.0, nullptr, encode(contacts_[j])}));
       }
-      if (view_.has_motions) {
-        if (!is_last) verdicts += motions_between(begin, end, j, json["points"]);
-      } else {
-        verdicts += configurations_between(begin, end, j, json["points"]);
-      }
+      if (!view_.has_motions || !is_last) verdicts += step_verdict(begin, end, j, json["points"]);
     }
     json["verdicts"] = verdicts;
   }
@@ -250,43 +260,34 @@ class Recording {
            joint_outside_limits(checker_.robot(), trajectory_.configuration(index)) != nullptr;
   }
 
-  char motions_between(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
-    char worst = is_outside_limits(begin) ? 'l' : 'f';
+  // The worst verdict of the configurations or motions of a step; its first contact goes to the
+  // points, unless it is that of the shown configuration with which the step begins.
+  char step_verdict(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
+    const TrajectoryVerdicts& verdicts = report_.found.verdicts;
+    char worst = 'f';
     for (std::size_t i = begin; i < end; ++i) {
-      const EdgeResult& motion = report_.found.verdicts.motions[i];
-      if (is_outside_limits(i + 1)) worst = 'l';
-      if (motion.verdict == Verdict::kUnknown && worst == 'f') worst = 'u';
-      if (motion.verdict != Verdict::kCollision) continue;
-      if (motion.contact_at > 0.0 || i > begin) {
-        const std::vector<double> configuration = checker_.configuration_on_edge(
-            trajectory_.configuration(i), trajectory_.configuration(i + 1), motion.contact_at,
-            view_.continuous);
-        const double place = static_cast<double>(i - begin) + motion.contact_at;
-        points.push_back(point(j, place / static_cast<double>(end - begin), configuration, i,
-                               motion.contact_at));
-      }
-      return 'c';
-    }
-    return worst;
-  }
-
-  char configurations_between(std::size_t begin, std::size_t end, std::size_t j, Json& points) {
-    const auto& free = report_.found.verdicts.free;
-    char worst = is_outside_limits(begin) ? 'l' : 'f';
-    if (free[begin] == 0) return 'c';
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      if (is_outside_limits(i)) worst = 'l';
-      if (free[i] != 0) continue;
-      const double share = static_cast<double>(i - begin) / static_cast<double>(end - begin);
-      points.push_back(point(j, share, trajectory_.configuration(i), i, 0.0));
+      const EdgeResult* motion = view_.has_motions ? &verdicts.motions[i] : nullptr;
+      if (is_outside_limits(i) || (motion && is_outside_limits(i + 1))) worst = 'l';
+      if (motion && motion->verdict == Verdict::kUnknown && worst == 'f') worst = 'u';
+      if (motion ? motion->verdict != Verdict::kCollision : verdicts.free[i] != 0) continue;
+      const double fraction = motion ? motion->contact_at : 0.0;
+      if (fraction > 0.0 || i > begin) points.push_back(point(j, begin, end, i, fraction));
       return 'c';
     }
     return worst;
   }
 
   // What touches in a configuration that is not among the shown ones.
-  Json point(std::size_t j, double share, std::span<const double> configuration, std::size_t index,
+  Json point(std::size_t j, std::size_t begin, std::size_t end, std::size_t index,
              double fraction) {
+    const std::span from = trajectory_.configuration(index);
+    std::vector<double> configuration(from.begin(), from.end());
+    if (fraction > 0.0) {
+      configuration = checker_.configuration_on_edge(from, trajectory_.configuration(index + 1),
+                                                     fraction, view_.continuous);
+    }
+    const double share =
+        (static_cast<double>(index - begin) + fraction) / static_cast<double>(end - begin);
     const std::size_t next = view_.has_motions ? trajectory_.lines[index + 1] : 0;
     return Json::array({static_cast<float>(static_cast<double>(j) + share),
                         trajectory_.lines[index], next, static_cast<float>(fraction),
@@ -359,23 +360,14 @@ ViewScene scene_of(const CheckedScene& checked, const TrajectoryView& view) {
     warn(std::string("the page shows no meshes of the robot: ") + error.what());
   }
   scene.items.push_back(checked_spheres(checked.checker.robot()));
-  for (ViewItem& item : view_obstacles(checked.scene, checked.robot.model)) {
+  for (ViewItem& item : Obstacles(checked.robot.model).run(checked.scene)) {
     scene.items.push_back(std::move(item));
   }
-  scene.trajectory = view_trajectory(checked.checker, checked.trajectory, checked.report, view);
+  scene.trajectory = Recording(checked.checker, checked.trajectory, checked.report, view).run();
   return scene;
 }
 
 }  // namespace
-
-std::vector<ViewItem> view_obstacles(const SceneDescription& scene, const RobotModel& robot) {
-  return Obstacles(robot).run(scene);
-}
-
-Json view_trajectory(const RobotChecker& checker, const Trajectory& trajectory,
-                     const CheckReport& report, const TrajectoryView& view) {
-  return Recording(checker, trajectory, report, view).run();
-}
 
 void write_check_page(const std::string& page, const CheckedScene& checked,
                       const TrajectoryView& view) {

@@ -6,7 +6,7 @@
 #include "simplifier/leaks.h"
 #include "spheretree/sphere_tree.h"
 
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,10 +16,14 @@
 
 namespace spherule {
 
-// Numbers as the page of `view` carries them: the bytes of 32-bit words, the lowest first, in
-// base64.
-std::string encode_words(std::span<const float> words);
-std::string encode_words(std::span<const std::int32_t> words);
+std::string base64(std::span<const std::byte> bytes);
+
+// Numbers of 32 bits as the page of `view` carries them: their bytes, the lowest first, in base64.
+template <class Row>
+std::string encode_words(const std::vector<Row>& rows) {
+  static_assert(sizeof(Row) % 4 == 0);
+  return base64(std::as_bytes(std::span(rows)));
+}
 
 // Where a surface is outside of spheres: points of it, the deepest first, and if it is known the
 // part that is.
@@ -53,15 +57,15 @@ struct ViewScene {
   std::string title;
   std::vector<ViewItem> items;
   Json robot = nullptr;       // its links and joints (cli/pages/view_robot.h)
-  Json trajectory = nullptr;  // and how it was checked (cli/pages/view_trajectory.h)
+  Json trajectory = nullptr;  // and how it was checked (cli/pages/check_view.h)
 };
 
 // A self-contained HTML page (no network) that draws the items in one scene. Coordinates are
 // written as 32-bit floats, without a robot relative to the middle of the scene: the page is for
-// looking only.
+// looking only. Throws Error where there is nothing to show.
 std::string make_view_page(const ViewScene& scene);
 
-// Writes the page of `view` that shows a scene.
+// Writes it.
 void write_page(const std::string& page, const ViewScene& scene);
 
 // "page: FILE (N KiB); open it in a browser", for a person.

@@ -127,15 +127,17 @@ Json view_postures(const TrajectoryArguments& arguments, const RobotModel& robot
   const std::vector<float> positions(trajectory.positions.begin(), trajectory.positions.end());
   return {{"file", arguments.file},
           {"lines", trajectory.lines},
-          {"positions", encode_words(std::span<const float>(positions))}};
+          {"positions", encode_words(positions)}};
+}
+
+bool is_sphere(const LinkShape& shape) {
+  const auto* primitive = std::get_if<Primitive>(&shape.geometry);
+  return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
 }
 
 bool has_spheres(const RobotDescription& robot) {
-  return std::any_of(robot.links.begin(), robot.links.end(), [](const LinkDescription& link) {
-    return std::any_of(link.collision.begin(), link.collision.end(), [](const LinkShape& shape) {
-      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
-      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
-    });
+  return std::ranges::any_of(robot.links, [](const LinkDescription& link) {
+    return std::ranges::any_of(link.collision, is_sphere);
   });
 }
 
@@ -195,10 +197,7 @@ ViewItem view_meshes(const RobotDescription& robot, LinkGeometry geometry,
   ViewItem item{.name = name + " geometry", .parts = {}};
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     LinkDescription link = robot.links[i];
-    std::erase_if(link.collision, [](const LinkShape& shape) {
-      const auto* primitive = std::get_if<Primitive>(&shape.geometry);
-      return primitive != nullptr && std::holds_alternative<SolidSphere>(*primitive);
-    });
+    std::erase_if(link.collision, is_sphere);
     auto mesh = link_mesh(link, {.geometry = geometry});
     if (mesh) item.parts.push_back({std::move(*mesh), static_cast<int>(i)});
   }

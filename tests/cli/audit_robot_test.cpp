@@ -39,8 +39,7 @@ class AuditRobotCommand : public CommandTest {
 
 TEST_F(AuditRobotCommand, ExitCodeAndTable) {
   write("good.yml", spheres(0.12, 0.05));
-  const Outcome good = expect_exit(0, "audit-robot two.urdf good.yml");
-  EXPECT_TRUE(has(good.out, "cuRobo yml"));
+  expect_said(0, "audit-robot two.urdf good.yml", "cuRobo yml");
   write("leaks.yml", spheres(0.09, 0.05));
   const Outcome leaks = expect_exit(1, "audit-robot two.urdf leaks.yml");
   EXPECT_TRUE(has(leaks.out, "NO"));
@@ -64,9 +63,7 @@ TEST_F(AuditRobotCommand, Json) {
   EXPECT_GE(base.at("certificate").at("uncovered_depth_surface").at(1), depth - 1e-9);
   EXPECT_EQ(base.at("warnings"), json::array());
   EXPECT_EQ(report.at("links").at(1).at("certificate").at("covered"), true);
-  Words with_one_thread = command;
-  with_one_thread.insert(with_one_thread.end(), {"--threads", "1"});
-  EXPECT_EQ(run(with_one_thread).out, result.out);
+  EXPECT_EQ(run(joined(command, "--threads 1")).out, result.out);
 }
 
 TEST_F(AuditRobotCommand, LevelsAreChosen) {
@@ -88,7 +85,7 @@ TEST_F(AuditRobotCommand, PosesDecide) {
   write("good.csv", "turn\n3.14159\n");
   write("bad.csv", "3.14159\n0\n");
   expect_exit(1, "audit-robot two.urdf arm.json");
-  const Outcome good = expect_exit(0, "audit-robot two.urdf arm.json --poses good.csv");
+  expect_exit(0, "audit-robot two.urdf arm.json --poses good.csv");
   const Outcome bad = expect_exit(1, "audit-robot two.urdf arm.json --poses bad.csv --json");
   const json poses = json::parse(bad.out).at("configurations");
   EXPECT_EQ(poses.at(0).at("deepest_link"), "");
@@ -139,11 +136,9 @@ TEST_F(AuditRobotCommand, RepairKeepsTheFormat) {
 
 TEST_F(AuditRobotCommand, BuffersBelowZeroShrink) {
   write("shrunk.yml", spheres(0.12, 0.05) + "    collision_sphere_buffer: -0.02\n");
-  const Outcome result = expect_exit(1, "audit-robot two.urdf shrunk.yml");
-  EXPECT_TRUE(has(result.err, "shrink"));
+  expect_said(1, "audit-robot two.urdf shrunk.yml", "shrink");
   write("one.yml", spheres(0.12, 0.05) + "    collision_sphere_buffer: {base: -0.02}\n");
-  const Outcome one = expect_exit(1, "audit-robot two.urdf one.yml");
-  EXPECT_TRUE(has(one.err, "shrink"));
+  expect_said(1, "audit-robot two.urdf one.yml", "shrink");
   expect_refusal("audit-robot two.urdf shrunk.yml --repair out.yml", "buffer below 0");
 }
 

@@ -20,8 +20,7 @@ class AuditTest : public CommandTest {
 
 TEST_F(AuditTest, ForeignSpheresThatCover) {
   write_spheres("ball.json", {{1, 0.005, 0.005, 1.03}});  // the corners are at 1.000025
-  const Outcome result = expect_exit(0, "audit bar.stl ball.json --json");
-  const json certificate = json::parse(result.out);
+  const json certificate = expect_json(0, "audit bar.stl ball.json");
   EXPECT_EQ(certificate.at("covered"), true);
   EXPECT_EQ(certificate.at("against"), "mesh and its inside");
   EXPECT_TRUE(certificate.at("deepest_leak").is_null());
@@ -31,8 +30,7 @@ TEST_F(AuditTest, ForeignSpheresThatCover) {
 
 TEST_F(AuditTest, ForeignSpheresThatLeak) {
   write_spheres("ball.json", {{1, 0.005, 0.005, 0.9}});
-  const Outcome result = expect_exit(1, "audit bar.stl ball.json --json");
-  const json certificate = json::parse(result.out);
+  const json certificate = expect_json(1, "audit bar.stl ball.json");
   EXPECT_EQ(certificate.at("covered"), false);
   const double depth = std::sqrt(1.00005) - 0.9;
   EXPECT_LE(certificate.at("uncovered_depth").at(0), depth * (1 + 1e-9));
@@ -44,8 +42,7 @@ TEST_F(AuditTest, ForeignSpheresThatLeak) {
     const double x = certificate.at("deepest_leak").at(axis++);
     EXPECT_NEAR(std::abs(x - half), half, 0.003);
   }
-  const Outcome text = expect_exit(1, "audit bar.stl ball.json");
-  EXPECT_TRUE(has(text.out, "deepest at ("));
+  expect_said(1, "audit bar.stl ball.json", "deepest at (");
 }
 
 TEST_F(AuditTest, NoSpheresCoverNothing) {
@@ -142,8 +139,8 @@ TEST_F(AuditTest, OptionsOfReadingMayBeWholeNumbers) {
 
 TEST_F(AuditTest, RepairMakesALeakingSetCover) {
   write_spheres("ball.json", {{1, 1, 1, 1.5}, {0.5, 0.5, 0.5, 0.1}});
-  const Outcome result = expect_exit(0, {"audit", "box.stl", "ball.json", "--json", "--repair",
-                                         "mended.json", "--max-error", "0.4"});
+  const Outcome result =
+      expect_exit(0, "audit box.stl ball.json --json --repair mended.json --max-error 0.4");
   const json out = json::parse(result.out);
   EXPECT_EQ(out.at("covered"), false);  // as it was
   const json& repair = out.at("repair");

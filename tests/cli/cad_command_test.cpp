@@ -2,7 +2,6 @@
 // CAD files as the command reads them: in a process of its own, whose end is an error at most.
 #include "base/error.h"
 #include "base/files.h"
-#include "cli/cad/cad_arguments.h"
 #include "cli/cad/cad_message.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/simplifier/cad/cad_parts.h"
@@ -35,7 +34,7 @@ class CadCommand : public CommandTest {
       write((modules / "spherule_cad").string(), "#!/bin/sh\n" + script);
       fs::permissions(modules / "spherule_cad", fs::perms::owner_all);
     }
-    return finish(start_process(command, {"info", "part.step"},
+    return finish(start_process(command, Words("info part.step"),
                                 {.folder = folder_, .out = ".out", .error = ".err"}));
   }
 

@@ -27,11 +27,22 @@ class CheckMotionsTest : public CheckTest {
     CheckTest::SetUp();
     write("slider.json", R"({"wrist": {"centers": [[0.5, 0, 0]], "radii": [0.02]},
                              "hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-      {"name": "post", "ball": {"radius": 0.05}, "pose": {"position": [0.5, 0, 0]}}]})");
+    write("cell.json", scene(ball("post", "0.05", "0.5, 0, 0")));
     write("path.csv", "slide turn\n0 2\n0 3\n0 -3\n0 -2\n");
   }
   Outcome outcome_of(const Words& more) { return run(command(more)); }
+
+  // A wheel that follows the one joint of a hand.
+  void write_geared(const std::string& multiplier) {
+    write("geared.urdf", R"(<robot name="geared"><link name="base"/><link name="hand"/>
+      <link name="wheel"/>
+      <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/>
+        <axis xyz="0 0 1"/></joint>
+      <joint name="gear" type="continuous"><parent link="base"/><child link="wheel"/>
+        <axis xyz="0 0 1"/><mimic joint="turn" multiplier=")" +
+                             multiplier + R"("/></joint></robot>)");
+    write("slider.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
+  }
 };
 
 TEST_F(CheckMotionsTest, ContinuousJointsTurnAsGivenAndThatIsSaid) {
@@ -67,8 +78,7 @@ TEST_F(CheckMotionsTest, OrTheShorterWay) {
   EXPECT_TRUE(has(outcome.out, "continuous joints turn the shorter way"));
   EXPECT_TRUE(has(outcome.out, "by -6 rad as given, here by 0.283185 rad"));
   // A post on the shorter way is found there, where it is.
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "post", "ball": {"radius": 0.03}, "pose": {"position": [-0.5, 0, 0]}}]})");
+  write("cell.json", scene(ball("post", "0.03", "-0.5, 0, 0")));
   EXPECT_EQ(checked(0, "--edges")["verdict"], "free");
   const json report = checked(1, "--edges --continuous shortest");
   EXPECT_EQ(report["continuous"], "shortest");
@@ -79,21 +89,21 @@ TEST_F(CheckMotionsTest, OrTheShorterWay) {
               (0.1415927 - 0.05 / 0.5) / 0.2831853, 0.01);
 }
 
+TEST_F(CheckMotionsTest, HalfATurnHasNoShorterWay) {
+  write("path.csv", "0 0.5\n0 3.6416\n0 0.5\n");
+  const Outcome outcome = outcome_of("--edges --continuous shortest");
+  EXPECT_EQ(count_of(outcome.err, "\n"), 1u) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "of 2 motions no way is clearly the shorter one"));
+  EXPECT_TRUE(has(outcome.err, "from line 1 to line 2: joint turn"));
+}
+
 TEST_F(CheckMotionsTest, TheShorterWayIsRefusedWhereAFollowerForbidsIt) {
-  write("geared.urdf", R"(<robot name="geared"><link name="base"/><link name="hand"/>
-    <link name="wheel"/>
-    <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/>
-      <axis xyz="0 0 1"/></joint>
-    <joint name="gear" type="continuous"><parent link="base"/><child link="wheel"/>
-      <axis xyz="0 0 1"/><mimic joint="turn" multiplier="0.5"/></joint></robot>)");
+  write_geared("0.5");
   write("path.csv", "3\n-3\n");
-  write("slider.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-  Words line = "check geared.urdf cell.json path.csv --spheres slider.json --edges";
+  const std::string line = "check geared.urdf cell.json path.csv --spheres slider.json --edges";
   expect_exit(0, line);
-  line.insert(line.end(), {"--continuous", "shortest"});
-  expect_refusal(line, "geared.urdf: joint gear: ");
-  line.back() = "longest";
-  expect_refusal(line, "longest");
+  expect_refusal(line + " --continuous shortest", "geared.urdf: joint gear: ");
+  expect_refusal(line + " --continuous longest", "longest");
 }
 
 // Positions of joints that mimic others count, and where the shorter way ends.
@@ -102,17 +112,10 @@ TEST_F(CheckMotionsTest, WhatCannotBeProvedIsNamedByItsLine) {
   EXPECT_EQ(outcome_of("--edges").exit_code, 1);
   expect_refusal(command("--edges --continuous shortest"),
                  "path.csv: line 3: joint turn is at a position beyond 100");
-  write("geared.urdf", R"(<robot name="geared"><link name="base"/><link name="hand"/>
-    <link name="wheel"/>
-    <joint name="turn" type="continuous"><parent link="base"/><child link="hand"/>
-      <axis xyz="0 0 1"/></joint>
-    <joint name="gear" type="continuous"><parent link="base"/><child link="wheel"/>
-      <axis xyz="0 0 1"/><mimic joint="turn" multiplier="30"/></joint></robot>)");
+  write_geared("30");
   write("path.csv", "3\n4\n");
-  write("slider.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-  expect_refusal(
-      {"check", "geared.urdf", "cell.json", "path.csv", "--spheres", "slider.json", "--edges"},
-      "path.csv: line 2: joint gear is at a position beyond 100");
+  expect_refusal("check geared.urdf cell.json path.csv --spheres slider.json --edges",
+                 "path.csv: line 2: joint gear is at a position beyond 100");
 }
 
 TEST_F(CheckMotionsTest, WarnsOfJointLimitsOrEnforcesThem) {
@@ -148,8 +151,7 @@ TEST_F(CheckMotionsTest, WarnsOfJointLimitsOrEnforcesThem) {
 }
 
 TEST_F(CheckMotionsTest, AContactOutsideTheLimitsIsAContact) {
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "post", "ball": {"radius": 0.05}, "pose": {"position": [3, 0, 0]}}]})");
+  write("cell.json", scene(ball("post", "0.05", "3, 0, 0")));
   write("path.csv", "0 0\n3 0\n");
   const json report = checked(1, "--edges --enforce-limits");
   EXPECT_EQ(report["verdict"], "collision");
@@ -178,9 +180,8 @@ class ShardTest : public CheckTest {
   void SetUp() override {
     CheckTest::SetUp();
     // Across the wall, beyond the limits, and past a post so close that it is not proved.
-    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-      {"name": "wall", "box": {"size": [0.001, 1, 1]}},
-      {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [1.47, 0.150000001, 0]}}]})");
+    write("cell.json",
+          scene(std::string(kWall) + "," + ball("post", "0.1", "1.47, 0.150000001, 0")));
     write("path.csv",
           "-1 0\n-0.5 1\n0.5 1\n# a line that is passed over\n0.02 1\n0.7 0\n2.5 0\n2.6 0\n1 "
           "0\n1.8 0\n1 0\n"
@@ -241,7 +242,7 @@ json merged(const std::vector<json>& parts) {
 
 TEST_F(ShardTest, ReportsTogetherAreThatOfTheWhole) {
   const std::vector<Words> ways = {
-      {}, {"--edges", "--resolution", "0.01"}, {"--edges", "--continuous", "shortest"}};
+      {}, "--edges --resolution 0.01", "--edges --continuous shortest"};
   for (const Words& way : ways) {
     const json whole = without_turns(checked(1, way));
     ASSERT_GT(whole["limits"]["outside"], 0);
@@ -252,10 +253,8 @@ TEST_F(ShardTest, ReportsTogetherAreThatOfTheWhole) {
     for (const int of : test::effort(std::vector{7, 2, 3, 16, 40}, 1)) {
       std::vector<json> parts;
       for (int i = 1; i <= of; ++i) {
-        Words line = command(way);
-        line.insert(line.end(),
-                    {"--json", "--shard", std::to_string(i) + "/" + std::to_string(of)});
-        const Outcome outcome = run(line);
+        const Outcome outcome = run(
+            joined(command(way), "--json --shard " + std::to_string(i) + "/" + std::to_string(of)));
         ASSERT_LE(outcome.exit_code, 1) << outcome.err;
         parts.push_back(without_turns(json::parse(outcome.out)));
         EXPECT_EQ(outcome.exit_code, parts.back()["verdict"] == "free" ? 0 : 1);
@@ -283,11 +282,9 @@ TEST_F(ShardTest, TheDeepestContactsOfManyMotionsDoNotDependOnTheParts) {
 TEST_F(ShardTest, WhatIsNoShardIsRefused) {
   for (const char* text :
        {"", "3", "0/4", "5/4", "1/0", "-1/4", "1/4x", "a/b", "1/", "1/9999999"}) {
-    const Outcome outcome = expect_exit(2, command({"--shard", text}));
-    EXPECT_TRUE(has(outcome.err, "--shard"));
+    expect_said(2, command({"--shard", text}), "--shard");
   }
-  const Outcome empty = expect_exit(2, command("--shard 40/40 --view page.html"));
-  EXPECT_TRUE(has(empty.err, "is empty"));
+  expect_said(2, command("--shard 40/40 --view page.html"), "is empty");
 }
 
 }  // namespace

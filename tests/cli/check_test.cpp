@@ -55,9 +55,8 @@ TEST_F(CheckTest, FirstAndDeepestContacts) {
 
 // What a motion meets behind its first contact is a pair, too.
 TEST_F(CheckTest, AllThatAMotionTouchesIsNamed) {
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "near", "ball": {"radius": 0.1}, "pose": {"position": [-0.5, 0, 0]}},
-    {"name": "far", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0, 0]}}]})");
+  write("cell.json",
+        scene(ball("near", "0.1", "-0.5, 0, 0") + "," + ball("far", "0.1", "0.5, 0, 0")));
   const json report = checked(1, "--edges");
   ASSERT_EQ(report["pairs"].size(), 2u);
   for (const std::size_t i : {0U, 1U}) {
@@ -70,13 +69,12 @@ TEST_F(CheckTest, AllThatAMotionTouchesIsNamed) {
 }
 
 TEST_F(CheckTest, GrazingIsNotProved) {
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -0.050001]}}]})");
+  write("cell.json",
+        scene(R"({"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -0.050001]}})"));
   // Along the floor, which is a plane, a micrometre is enough.
   EXPECT_EQ(checked(0, "--edges --resolution 0.01")["verdict"], "free");
   // Only where x is 0.47, shortly before three quarters of the way.
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.47, 0.150000001, 0]}}]})");
+  write("cell.json", scene(ball("post", "0.1", "0.47, 0.150000001, 0")));
   const json report = checked(1, "--edges --resolution 0.01");
   EXPECT_EQ(report["verdict"], "not proved");
   EXPECT_EQ(report["colliding"], 0);
@@ -93,9 +91,9 @@ TEST_F(CheckTest, ObstaclesOfAllKinds) {
   write_spheres("balls.json", {{0.0, 0.0, 0.0, 0.01}});
   run("tree balls.json -o balls.tree");
   write("scan.xyz", "0 0 0\n0.001 0 0\n");
-  const auto scene = [](const std::string& shape) {
-    return R"({"format": "spherule-scene", "version": 1, "obstacles": [{"name": "thing", )" +
-           shape + R"(, "pose": {"position": [1, 0, 0]}}]})";
+  const auto place = [this](const std::string& shape, const std::string& position) {
+    write("cell.json", scene(R"({"name": "thing", )" + shape + R"(, "pose": {"position": [)" +
+                             position + "]}}"));
   };
   for (const std::string shape :
        {R"("mesh": {"file": "block.stl", "scale": 0.001})", R"("spheres": {"file": "balls.json"})",
@@ -103,16 +101,14 @@ TEST_F(CheckTest, ObstaclesOfAllKinds) {
         R"("ball": {"radius": 0.01})", R"("capsule": {"radius": 0.01, "length": 0.1})",
         R"("cylinder": {"radius": 0.01, "length": 0.1})"}) {
     SCOPED_TRACE(shape);
-    write("cell.json", scene(shape));
+    place(shape, "1, 0, 0");
     write("path.csv", "0 0\n");
     EXPECT_EQ(checked(0)["verdict"], "free");
     // The hand is wholly inside the block.
     write("path.csv", shape.find("mesh") != std::string::npos ? "1.06 0\n" : "1 0\n");
     EXPECT_EQ(checked(1)["first_contact"]["second"]["name"], "thing");
   }
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "thing", "mesh": {"file": "block.stl", "scale": 0.001},
-     "pose": {"position": [0, -0.5, -0.5]}}]})");
+  place(R"("mesh": {"file": "block.stl", "scale": 0.001})", "0, -0.5, -0.5");
   write("path.csv", "0.5 0\n");
   EXPECT_EQ(checked(1)["colliding"], 1);
 }
@@ -166,9 +162,7 @@ TEST_F(CheckTest, TheLastMotionIsProvedToo) {
 
 // Of several pairs, each has its own count, first and deepest contact.
 TEST_F(CheckTest, PairsAreToldApart) {
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "wall", "box": {"size": [0.001, 1, 1]}},
-    {"name": "post", "ball": {"radius": 0.1}, "pose": {"position": [0.5, 0, 0]}}]})");
+  write("cell.json", scene(std::string(kWall) + "," + ball("post", "0.1", "0.5, 0, 0")));
   write("path.csv", "0.04 0\n0.4 0\n0.45 0\n");
   const json report = checked(1);
   ASSERT_EQ(report["pairs"].size(), 2u);
@@ -189,9 +183,8 @@ TEST_F(CheckTest, PairsThatAreLeftOut) {
   const std::string spheres =
       "collision_spheres:\n  a: [{center: [0, 0, 0], radius: 0.1}]\n"
       "  b: [{center: [0, 5, 0], radius: 0.1}]\n  c: [{center: [0, 0, 0], radius: 0.1}]\n";
-  const std::string scene = R"({"format": "spherule-scene", "version": 1)";
   write("three.yml", spheres);
-  write("cell.json", scene + "}");
+  write("cell.json", scene(""));
   write("path.csv", "0 0\n");
   const Words line = "check three.urdf cell.json path.csv --spheres three.yml";
   expect_exit(1, line);
@@ -200,7 +193,7 @@ TEST_F(CheckTest, PairsThatAreLeftOut) {
   EXPECT_TRUE(has(ignored.err, "1 of the pairs of links are ignored"));
   EXPECT_TRUE(has(ignored.err, "its buffers are not added"));
   write("three.yml", spheres);
-  write("cell.json", scene + R"(, "robot": {"srdf": "three.srdf"}})");
+  write("cell.json", scene("", R"("robot": {"srdf": "three.srdf"})"));
   write("three.srdf", R"(<robot name="three"><disable_collisions link1="a" link2="gone"/>
     <disable_collisions link1="gone" link2="c"/></robot>)");
   expect_exit(1, line);
@@ -210,22 +203,18 @@ TEST_F(CheckTest, PairsThatAreLeftOut) {
 }
 
 TEST_F(CheckTest, PointsAreScaledAndThinnedOut) {
-  const auto scene = [this](const std::string& more) {
-    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-      {"name": "scan", "points": {"file": "scan.xyz", "radius": 0.01)" +
-                           more + "}}]}");
+  const auto checked_with = [this](const std::string& more, const std::string& verdict) {
+    write("cell.json",
+          scene(R"({"name": "scan", "points": {"file": "scan.xyz", "radius": 0.01)" + more + "}}"));
+    EXPECT_EQ(checked(verdict == "free" ? 0 : 1)["verdict"], verdict);
   };
   write("scan.xyz", "1000 0 0\n1300 0 0\n");
   write("path.csv", "1.15 0\n");
-  scene("");
-  EXPECT_EQ(checked(0)["verdict"], "free");
-  scene(R"(, "scale": 0.001)");
-  EXPECT_EQ(checked(0)["verdict"], "free");
-  scene(R"(, "scale": 0.001, "voxel": 2)");  // one sphere around both
-  EXPECT_EQ(checked(1)["verdict"], "collision");
+  checked_with("", "free");
+  checked_with(R"(, "scale": 0.001)", "free");
+  checked_with(R"(, "scale": 0.001, "voxel": 2)", "collision");  // one sphere around both
   write("path.csv", "1.3 0\n");
-  scene(R"(, "scale": 0.001)");
-  EXPECT_EQ(checked(1)["verdict"], "collision");
+  checked_with(R"(, "scale": 0.001)", "collision");
 }
 
 // What is not checked, or looks wrong, is a warning of one line; the exit code does not change.
@@ -233,8 +222,8 @@ TEST_F(CheckTest, Warnings) {
   write("sheet.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n");
   write("mesh.json", wall_and(R"("attached": [{"name": "tool", "link": "hand",
     "mesh": {"file": "sheet.obj"}, "pose": {"position": [0.5, 0, 0]}}])"));
-  write("far.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "table", "box": {"size": [600, 800, 50]}, "pose": {"position": [600, 0, 0]}}]})");
+  write("far.json", scene(R"({"name": "table", "box": {"size": [600, 800, 50]},
+    "pose": {"position": [600, 0, 0]}})"));
   write("off.json", R"({"hand": {"centers": [[0, 0, 0], [0, 0, 0]], "radii": [0.05, -1]}})");
   write("own.xrdf",
         "format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\n"
@@ -263,47 +252,50 @@ TEST_F(CheckTest, Warnings) {
 }
 
 TEST_F(CheckTest, RefusesBadInput) {
-  const auto refused = [this](const std::string& reason) { expect_refusal(command({}), reason); };
-  write("path.csv", "0 0\n0\n");
-  refused("path.csv: line 2: has 1 numbers instead of 2");
-  write("path.csv", "slide,elbow\n0,0\n");
-  refused("path.csv: line 1: the robot has no joint 'elbow'");
-  write("path.csv", "0 0\n\n0 800\n");
-  expect_refusal(command("--edges"), "path.csv: line 3: joint turn is at a position beyond 100");
-  write("path.csv", "0 0\n");
-  expect_refusals({{command("--edges --resolution 0"), "resolution"},
-                   {command("--resolution 0.01"), "--edges"},
-                   {command("--continuous shortest"), "--edges"}});
-  write("cell.json", wall_and(R"("obstacle": [])"));
-  refused("cell.json: the key 'obstacle' is not known here");
-  write("cell.json", wall_and(R"("allowed_contacts": [{"body": "arm", "other": "wall"}])"));
-  refused("arm");
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "part", "mesh": {"file": "none.stl"}}]})");
-  refused("none.stl");
-  write("cell.json", wall_and(""));
-  write("slider.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
-  refused("slider.json: has spheres of 1 link that the robot has not got: 'arm'");
+  write("one.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
+    "spheres": [{"center": [0, 0, 0], "radius": 0.05}]})");
+  write("arm.json", R"({"arm": {"centers": [[0, 0, 0]], "radii": [0.05]}})");
+  write("huge.urdf", sliding("huge", "", box("collision", "1e4 1e4 1e4")));
+  write("short.csv", "0\n");
+  const std::string check = "check slider.urdf cell.json path.csv --spheres ";
+  expect_refusals(
+      {{command("--edges --resolution 0"), "resolution"},
+       {command("--resolution 0.01"), "--edges"},
+       {command("--continuous shortest"), "--edges"},
+       {check + "arm.json", "arm.json: has spheres of 1 link that the robot has not got"},
+       {check + "one.json", "one.json: holds the spheres of one mesh"},
+       {check + "slider.json --pairs none.pairs", "none."},
+       {check + "slider.json --view path.csv", "path.csv"},
+       {"check none.urdf cell.json path.csv", "none.urdf"},
+       {"check huge.urdf cell.json short.csv", "link 'hand': is"},
+       {"check huge.urdf cell.json short.csv --pairs none.pairs", "none."},
+       {"check slider.urdf", "scene"}});
   const std::vector<std::pair<std::string, std::string>> scenes = {
+      {R"("obstacle": [])", "cell.json: the key 'obstacle' is not known here"},
+      {R"("allowed_contacts": [{"body": "arm", "other": "wall"}])", "arm"},
       {R"("padding": [{"body": "hnad", "distance": 0.1}])", "hnad: there is no link"},
       {R"("attached": [{"name": "t", "link": "hand", "mesh": {"file": "none.stl"}}])", "none.stl"},
       {R"("attached": [{"name": "t", "link": "hnad", "tree": {"file": "t"}}])", "cell.json: "},
       {R"("regions": [{"body": "hnad", "name": "tip", "ball": {"center": [0, 0, 0], "radius": 1}}])",
        "hnad: "},
       {R"("robot": {"srdf": "none.srdf"})", "none.srdf: "}};
-  write("one.json", R"({"format": "spherule-spheres", "version": 1, "options": {},
-    "spheres": [{"center": [0, 0, 0], "radius": 0.05}]})");
   for (const auto& [keys, reason] : scenes) {
     write("cell.json", wall_and(keys));
     expect_refusal(command({}), reason);
+    // Before a robot is covered, as this one cannot be.
+    expect_refusal("check huge.urdf cell.json short.csv", reason);
   }
+  write("cell.json", scene(R"({"name": "part", "mesh": {"file": "none.stl"}})"));
+  expect_refusal(command({}), "none.stl");
   write("cell.json", wall_and(""));
-  const std::string check = "check slider.urdf cell.json path.csv --spheres ";
-  expect_refusals({{check + "one.json", "one.json: holds the spheres of one mesh"},
-                   {check + "slider.json --pairs none.pairs", "none."},
-                   {check + "slider.json --view path.csv", "path.csv"}});
-  expect_refusal("check none.urdf cell.json path.csv", "none.urdf");
-  expect_refusal("check slider.urdf", "scene");
+  const std::vector<std::pair<std::string, std::string>> paths = {
+      {"0 0\n0\n", "path.csv: line 2: has 1 numbers instead of 2"},
+      {"slide,elbow\n0,0\n", "path.csv: line 1: the robot has no joint 'elbow'"},
+      {"0 0\n\n0 800\n", "path.csv: line 3: joint turn is at a position beyond 100"}};
+  for (const auto& [path, reason] : paths) {
+    write("path.csv", path);
+    expect_refusal(command("--edges"), reason);
+  }
 }
 
 // What stands in no spheres is not checked, so that nothing is called free.
@@ -316,8 +308,7 @@ TEST_F(CheckTest, NothingIsFreeWithAShapeLeftOut) {
   write("slider.json", R"(<robot name="slider"><link name="hand">
     <collision><geometry><sphere radius="0.05"/></geometry></collision>
     <collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>)");
-  outcome = run(command({}));
-  EXPECT_EQ(outcome.exit_code, 1);
+  outcome = expect_exit(1, command({}));
   EXPECT_TRUE(has(outcome.err, "1 shapes are no spheres"));
 }
 
@@ -329,9 +320,8 @@ TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
     "mesh": {"file": "tool.stl"}, "pose": {"position": [0.05, -0.01, -0.01]}}],
     "allowed_contacts": [{"body": "tool", "other": "hand"}])"));
   write("path.csv", "-0.3 0\n-0.1 0\n0.03 0\n");
-  const Outcome outcome =
-      expect_exit(1, "check slider.urdf cell.json path.csv --max-error 0.04 --effort 0 --json");
-  const json report = json::parse(outcome.out);
+  const json report =
+      expect_json(1, "check slider.urdf cell.json path.csv --max-error 0.04 --effort 0");
   EXPECT_EQ(report["colliding"], 2);
   EXPECT_EQ(report["first_contact"]["first"]["name"], "tool");
   EXPECT_EQ(report["first_contact"]["line"], 2);
@@ -339,36 +329,26 @@ TEST_F(CheckTest, CoversTheRobotAndAToolWhereThereAreNoSpheres) {
 
 // Which of a link's geometries stands for it: what is covered, and what must stand in spheres.
 TEST_F(CheckTest, GeometryIsWhatIsAskedFor) {
-  write("two.urdf", R"(<robot name="two"><link name="base"/><link name="hand">
-    <visual><geometry><box size="0.02 0.02 0.02"/></geometry></visual>
-    <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
-    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("two.urdf",
+        sliding("two", "", box("visual", "0.02 0.02 0.02") + box("collision", "0.1 0.1 0.1")));
   write("path.csv", "-0.045\n");
+  const Words visual = "--geometry visual";
   Words line = "check two.urdf cell.json path.csv --max-error 0.02 --effort 0";
   expect_exit(1, line);
-  line.insert(line.end(), {"--geometry", "visual"});
-  expect_exit(0, line);
+  expect_exit(0, joined(line, visual));
   // A link that is only to be seen needs spheres only where the visual geometry stands for it.
-  write("seen.urdf", R"(<robot name="seen"><link name="base"><visual><geometry>
-    <sphere radius="0.02"/></geometry></visual></link><link name="hand"/>
-    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("seen.urdf", sliding("seen", box("visual", "0.02 0.02 0.02"), ""));
   write("path.csv", "-0.1\n");
-  line = {"check", "seen.urdf", "cell.json", "path.csv", "--spheres", "slider.json"};
+  line = "check seen.urdf cell.json path.csv --spheres slider.json";
   expect_exit(0, line);
-  line.insert(line.end(), {"--geometry", "visual"});
-  const Outcome seen = expect_exit(1, line);
-  EXPECT_TRUE(has(seen.err, "link base has a shape but no spheres"));
+  EXPECT_TRUE(
+      has(expect_exit(1, joined(line, visual)).err, "link base has a shape but no spheres"));
 }
 
 // What is attached has its own max error, and one geometry, whatever the robot's are.
 TEST_F(CheckTest, AttachedMeshesAreCoveredAsTheySay) {
   write_box("tool.stl", {0.1, 0.1, 0.1});
-  write("seen.urdf", R"(<robot name="seen"><link name="base"/><link name="hand"><visual><geometry>
-    <sphere radius="0.01"/></geometry></visual></link>
-    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
+  write("seen.urdf", sliding("seen", "", box("visual", "0.01 0.01 0.01")));
   // 0.025 from the wall: one sphere around the cube reaches 0.037 beyond its faces.
   write("path.csv", "-0.3255\n");
   const auto exit_code_with = [this](const std::string& max_error) {

@@ -4,18 +4,23 @@
 #include "tests/support/child_process.h"
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <system_error>
+#include <thread>
 
 namespace spherule {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Where the streams of a run are recorded, hidden from files().
+// Where the streams of a run are recorded.
 constexpr const char* kOut = ".out";
 constexpr const char* kErr = ".err";
 
@@ -91,11 +96,13 @@ void CommandTest::SetUp() {
 
 void CommandTest::TearDown() {
   fs::remove_all(folder_);
+  fs::remove_all(folder_.string() + "-bin");
 }
 
 pid_t CommandTest::start(const Words& arguments) {
-  return start_process(SPHERULE_COMMAND, arguments,
-                       {.folder = folder_, .out = kOut, .error = kErr});
+  return start_process(
+      SPHERULE_COMMAND, arguments,
+      {.folder = folder_, .out = kOut, .error = kErr, .environment = environment_});
 }
 
 Outcome CommandTest::finish(pid_t process) {
@@ -107,6 +114,19 @@ Outcome CommandTest::finish(pid_t process) {
 
 Outcome CommandTest::run(const Words& arguments) {
   return finish(start(arguments));
+}
+
+Outcome CommandTest::interrupted(const Words& arguments, int signal, const std::string& file) {
+  for (int milliseconds = 500; milliseconds < 100000; milliseconds *= 2) {
+    const pid_t process = start(arguments);
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    ::kill(process, signal);
+    Outcome outcome = finish(process);
+    EXPECT_EQ(outcome.exit_code, -signal) << outcome.out << outcome.err;
+    if (exists(file)) return outcome;
+  }
+  ADD_FAILURE() << "no answer";
+  return {};
 }
 
 void CommandTest::expect_refusal(const Words& arguments, const std::string& reason) {
@@ -128,6 +148,28 @@ Outcome CommandTest::expect_exit(int exit_code, const Words& arguments) {
   EXPECT_EQ(outcome.exit_code, exit_code)
       << ::testing::PrintToString(arguments) << outcome.out << outcome.err;
   return outcome;
+}
+
+void CommandTest::expect_said(int exit_code, const Words& arguments, const std::string& part) {
+  const Outcome outcome = expect_exit(exit_code, arguments);
+  EXPECT_TRUE(has(outcome.out + outcome.err, part));
+}
+
+nlohmann::json CommandTest::expect_json(int exit_code, const Words& arguments) {
+  return nlohmann::json::parse(expect_exit(exit_code, joined(arguments, "--json")).out);
+}
+
+Outcome CommandTest::type(const std::string& line) {
+  std::error_code there;
+  const std::string home = folder_.string();
+  fs::create_directory(home + "-bin", there);
+  fs::create_symlink(SPHERULE_COMMAND, home + "-bin/spherule", there);
+  return finish(start_process(
+      "/bin/sh", {"-c", line},
+      {.folder = folder_,
+       .out = kOut,
+       .error = kErr,
+       .environment = {"HOME=" + home, "PATH=" + home + "-bin:" + std::getenv("PATH")}}));
 }
 
 void CommandTest::write(const std::string& file, const std::string& bytes) {
@@ -154,7 +196,7 @@ std::vector<std::string> CommandTest::files() const {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const std::string name = entry.path().filename().string();
-    if (name != kOut && name != kErr) names.push_back(name);
+    if (!name.starts_with('.')) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -57,19 +57,26 @@ class CommandTest : public ::testing::Test {
   // Starts it and returns its process; finish() waits for it.
   pid_t start(const Words& arguments);
   Outcome finish(pid_t process);
+  // Interrupts a run by a signal, later and later, until it has written `file`.
+  Outcome interrupted(const Words& arguments, int signal, const std::string& file);
 
   // Runs it and expects the refusal of bad input: exit code 2, nothing on standard output, one line
   // on standard error that holds `reason`.
   void expect_refusal(const Words& arguments, const std::string& reason);
   void expect_refusals(const std::vector<Refusal>& refusals);
-  // Runs it and expects its exit code.
+  // Runs it and expects its exit code, and a part of what it prints; with --json, what it prints.
   Outcome expect_exit(int exit_code, const Words& arguments);
+  void expect_said(int exit_code, const Words& arguments, const std::string& part);
+  nlohmann::json expect_json(int exit_code, const Words& arguments);
+  // What a line does that a user types in the folder, which is the home there; `spherule` is the
+  // built command.
+  Outcome type(const std::string& line);
 
   void write(const std::string& file, const std::string& bytes);
   std::string read(const std::string& file) const;
   nlohmann::json read_json(const std::string& file) const;
   bool exists(const std::string& file) const;
-  // Names of all files in the folder, sorted, without the records of the runs.
+  // Names of all files in the folder, sorted, but those with a dot in front.
   std::vector<std::string> files() const;
 
   // A closed box from the origin, as text STL.
@@ -78,6 +85,7 @@ class CommandTest : public ::testing::Test {
   void write_spheres(const std::string& file, const std::vector<std::array<double, 4>>& spheres);
 
   std::filesystem::path folder_;
+  Words environment_;  // of the runs: NAME=VALUE
 };
 
 }  // namespace spherule

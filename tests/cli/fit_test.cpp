@@ -40,8 +40,7 @@ TEST_F(FitTest, ChainFromMeshToCollision) {
   EXPECT_EQ(spheres.at("options").at("max-error"), 2.0);
   EXPECT_EQ(spheres.at("options").at("min-external"), 8.0);
 
-  const Outcome audit = expect_exit(0, "audit box.stl box.json --json");
-  const json certificate = json::parse(audit.out);
+  const json certificate = expect_json(0, "audit box.stl box.json");
   EXPECT_EQ(certificate.at("covered"), true);
   EXPECT_EQ(certificate.at("min_external_diameter"), 8.0);
   EXPECT_EQ(certificate.at("against"), "simplified solid");
@@ -69,17 +68,14 @@ TEST_F(FitTest, WeldingShutsACrack) {
   EXPECT_TRUE(has(open.out, "not closed"));
   EXPECT_TRUE(has(open.err, "--weld 4.58258e-05 shuts"));
 
-  Words welding = fit;
-  welding.insert(welding.end(), {"--weld", "5e-05"});
-  const Outcome shut = expect_exit(0, welding);
+  const Outcome shut = expect_exit(0, joined(fit, "--weld 5e-05"));
   EXPECT_EQ(shut.err, "");
   EXPECT_TRUE(has(shut.out, "\nclosed"));
   EXPECT_EQ(read_json("box.json").at("options").at("weld"), 5e-05);
   const Outcome audit = expect_exit(0, "audit box.stl box.json --json");
   EXPECT_TRUE(json::parse(audit.out).at("volume_ratio").is_number()) << audit.out;
 
-  welding.back() = "-1";
-  expect_refusal(welding, "--weld");
+  expect_refusal(joined(fit, "--weld -1"), "--weld");
 }
 
 // Lengths that look like those of another unit, and spheres that lose to the mesh: a warning of one
@@ -120,9 +116,9 @@ TEST_F(FitTest, ReportLeavesOutWhatWasNotAskedFor) {
   EXPECT_EQ(report.at("simplified_solid").at("external_sphere_count"), 0) << "S is the box";
 
   write_box("bar.stl", {40, 1, 1});  // whose bound is quick
-  const Outcome bounded = expect_exit(
-      0, "fit bar.stl -o bar.json --max-error 4 --effort 0 --report report.json --lower-bound");
-  EXPECT_TRUE(has(bounded.out, "lower bound: no cover at this error has fewer than "));
+  expect_said(0,
+              "fit bar.stl -o bar.json --max-error 4 --effort 0 --report report.json --lower-bound",
+              "lower bound: no cover at this error has fewer than ");
   EXPECT_GT(read_json("report.json").at("cover").at("lower_bound"), 0);
 }
 
@@ -182,10 +178,9 @@ TEST_F(FitTest, ThreadsDoNotChangeTheOutput) {
   for (const char* method : {"cover", "paper"}) {
     for (const char* external : {"reachable", "random"}) {
       const auto fit = [&](const char* threads, const std::string& name) {
-        const Outcome result =
-            expect_exit(0, {"fit", "box.stl", "-o", name + ".json", "--max-error", "2", "--effort",
-                            "4", "--method", method, "--external", external, "--external-limit",
-                            "300", "--threads", threads, "--tree", name + ".tree"});
+        expect_exit(0, {"fit", "box.stl", "-o", name + ".json", "--max-error", "2", "--effort", "4",
+                        "--method", method, "--external", external, "--external-limit", "300",
+                        "--threads", threads, "--tree", name + ".tree"});
       };
       fit("1", "one");
       fit("2", "two");
@@ -242,8 +237,7 @@ TEST_F(FitTest, LevelsAreJoinedInTheTree) {
   EXPECT_GT(hits, 0);
   EXPECT_LT(hits, 12);
   expect_refusal("fit box.stl -o bad.json --levels 8,x", "'x' is not a number");
-  const Outcome finer = expect_exit(2, "fit box.stl -o bad.json --levels 8,1 --max-error 2");
-  EXPECT_TRUE(has(finer.err, "finer than the max error"));
+  expect_said(2, "fit box.stl -o bad.json --levels 8,1 --max-error 2", "finer than the max error");
 }
 
 TEST_F(FitTest, OptionsArriveInTheFile) {
@@ -308,8 +302,7 @@ TEST_F(FitTest, ZonesAreKeptProvedAndAudited) {
 TEST_F(FitTest, RefusalsOfThePlacementNameTheirCause) {
   const auto refuse = [&](const Words& more, const std::string& reason) {
     Words line = joined("fit box.stl -o no.json", more);
-    const Outcome fit = expect_exit(2, line);
-    EXPECT_TRUE(has(fit.err, "spherule: " + reason));
+    expect_said(2, line, "spherule: " + reason);
     EXPECT_FALSE(exists("no.json"));
   };
   refuse("--min-external 1e-9", "box.stl: grid step: too fine for a model");
@@ -348,8 +341,7 @@ class FitBodiesTest : public CommandTest {
   }
 
   Outcome fit(const Words& more = {}) {
-    return run(joined(
-        {"fit", "a.stl", "b.stl", "-o", "all.json", "--max-error", "1", "--effort", "0"}, more));
+    return run(joined("fit a.stl b.stl -o all.json --max-error 1 --effort 0", more));
   }
 };
 
@@ -395,8 +387,7 @@ TEST_F(FitBodiesTest, OtherCommandsReadTheFile) {
   json& last = all.at("spheres").back();
   last.at("radius") = 1e-3;
   write("leaky.json", all.dump());
-  outcome = run("audit a.stl b.stl leaky.json --json");
-  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  outcome = expect_exit(1, "audit a.stl b.stl leaky.json --json");
   const json verdict = json::parse(outcome.out);
   EXPECT_FALSE(verdict.at("covered").get<bool>());
   EXPECT_TRUE(verdict.at("bodies").at(0).at("covered").get<bool>());
@@ -456,18 +447,18 @@ TEST_F(UnitsTest, LengthsWithAUnitNeedThatOfTheMesh) {
   EXPECT_EQ(options().at("units"), "mm");
   EXPECT_EQ(options().at("scale"), 1.0);
   // A plain number stays in output units, and without --units nothing is stored or said.
-  outcome = fit("part.stl", {"--max-error", "4"});
+  outcome = fit("part.stl", "--max-error 4");
   EXPECT_FALSE(has(outcome.out, "unit"));
   EXPECT_FALSE(options().contains("units"));
 }
 
 TEST_F(UnitsTest, AFormatThatStatesItsUnitIsConverted) {
-  Outcome outcome = fit("part.glb", {"--max-error", "4mm"});
+  Outcome outcome = fit("part.glb", "--max-error 4mm");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(has(outcome.out, "unit: metre (stated by the format)\n"));
   EXPECT_EQ(options().at("max-error"), 0.004);
   EXPECT_EQ(options().at("units"), "m");
-  outcome = fit("part.glb", {"--units", "mm", "--max-error", "4", "--report", "report.json"});
+  outcome = fit("part.glb", "--units mm --max-error 4 --report report.json");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(has(outcome.out, "size 40 x 20 x 20"));
   EXPECT_EQ(options().at("scale"), 1000.0);
@@ -476,8 +467,7 @@ TEST_F(UnitsTest, AFormatThatStatesItsUnitIsConverted) {
   EXPECT_TRUE(has(outcome.out, "next: spherule view part.glb out.json --units mm -o out.html"));
   expect_exit(0, "view part.glb out.json --units mm -o out.html");
   // The audit reads it alike, and takes lengths with a unit.
-  outcome = run("audit part.glb out.json --min-external 1.6cm");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  outcome = expect_exit(0, "audit part.glb out.json --min-external 1.6cm");
   EXPECT_TRUE(has(outcome.out, "(D 16)"));
   expect_refusal("audit part.glb out.json --units m", "out.json is in millimetres");
 }
@@ -487,21 +477,20 @@ TEST_F(UnitsTest, ScaleAndUnitsMustAgree) {
   expect_refusal("fit part.glb -o out.json --units mm --scale 10",
                  "--scale: 10 contradicts --units mm: part.glb is read in units of metre, which "
                  "makes it 1000");
-  EXPECT_EQ(fit("part.glb", {"--units", "mm", "--scale", "1000", "--max-error", "4"}).exit_code, 0);
+  EXPECT_EQ(fit("part.glb", "--units mm --scale 1000 --max-error 4").exit_code, 0);
   // The numbers of an STL file times the scale are in the unit.
-  EXPECT_EQ(fit("part.stl", {"--units", "m", "--scale", "0.001", "--max-error", "4mm"}).exit_code,
-            0);
+  EXPECT_EQ(fit("part.stl", "--units m --scale 0.001 --max-error 4mm").exit_code, 0);
   EXPECT_EQ(options().at("max-error"), 0.004);
   // Without --units the unit of the output follows from the scale.
-  EXPECT_EQ(fit("part.glb", {"--scale", "100", "--max-error", "4mm"}).exit_code, 0);
+  EXPECT_EQ(fit("part.glb", "--scale 100 --max-error 4mm").exit_code, 0);
   EXPECT_EQ(options().at("max-error"), 0.4);
 }
 
 TEST_F(UnitsTest, EveryOptionThatIsALengthTakesAUnit) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
-  const Outcome outcome =
-      fit("part.stl", {"--units", "mm", "--max-error", "2mm", "--levels", "0.4cm,2", "--padding",
-                       "100um", "--min-radius", "0.1mm", "--min-internal", "1mm", "--weld", "1um"});
+  const Outcome outcome = fit("part.stl",
+                              "--units mm --max-error 2mm --levels 0.4cm,2 --padding 100um "
+                              "--min-radius 0.1mm --min-internal 1mm --weld 1um");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(options().at("padding"), 0.1);
   EXPECT_EQ(options().at("min-radius"), 0.1);
@@ -523,13 +512,13 @@ TEST_F(UnitsTest, WhatIsNoLengthIsRefused) {
 
 // A tool in millimetres, and a part in metres.
 TEST_F(UnitsTest, TheUnitOfAToolIsHeeded) {
-  ASSERT_EQ(fit("part.stl", {"--units", "mm", "--max-error", "4"}).exit_code, 0);
+  ASSERT_EQ(fit("part.stl", "--units mm --max-error 4").exit_code, 0);
   const json tool = read_json("out.json");
   double least = 1e9;
   for (const json& sphere : tool.at("spheres"))
     least = std::min(least, sphere.at("radius").get<double>());
   write("tool.json", read("out.json"));
-  ASSERT_EQ(fit("part.glb", {"--max-error", "4mm", "--tool", "tool.json"}).exit_code, 0);
+  ASSERT_EQ(fit("part.glb", "--max-error 4mm --tool tool.json").exit_code, 0);
   EXPECT_NEAR(options().at("min-external").get<double>(), 2e-3 * least, 1e-12);
   expect_refusal("fit part.stl -o other.json --tool tool.json",
                  "--tool tool.json: is in millimetres, but part.stl states no unit");

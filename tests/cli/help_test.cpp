@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
+#include "tests/cli/robot_fixtures.h"
 #include "tests/support/effort.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <system_error>
 #include <utility>
 
 namespace spherule {
@@ -62,41 +61,8 @@ Pages help_pages(const RunCommand& run, const Words& command = {}) {
   return pages;
 }
 
-bool is_installed(const std::string& program) {
-  return std::system(("command -v " + program + " >/dev/null").c_str()) == 0;
-}
-
-// A robot of one finger with what the examples name.
-constexpr const char* kRobot = R"(<?xml version="1.0"?>
-<robot name="robot">
-  <link name="base">
-    <visual><geometry><box size="0.008 0.001 0.001"/></geometry></visual>
-    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision>
-  </link>
-  <link name="hand">
-    <visual><geometry><box size="0.008 0.001 0.001"/></geometry></visual>
-    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision>
-  </link>
-  <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
-</robot>
-)";
-
 class HelpTest : public CommandTest {
  protected:
-  // A line as a user types it, in the folder, with the built command as `spherule`.
-  Outcome type(const std::string& line) {
-    std::filesystem::create_directories(folder_ / ".bin");
-    std::error_code there;
-    std::filesystem::create_symlink(SPHERULE_COMMAND, folder_ / ".bin/spherule", there);
-    write(".line",
-          "cd '" + folder_.string() + "'\nHOME=$PWD\nPATH=\"$PWD/.bin:$PATH\"\n" + line + "\n");
-    const int status = std::system(
-        ("sh '" + (folder_ / ".line").string() + "' >'" + (folder_ / ".typed").string() + "' 2>&1")
-            .c_str());
-    return {.exit_code = WEXITSTATUS(status), .out = read(".typed"), .err = ""};
-  }
-
   // All files that the examples start from.
   void write_files() {
     // Without external spheres what is inside is found by a flood: quick in a bar.
@@ -104,10 +70,12 @@ class HelpTest : public CommandTest {
     write_box("tool.stl", {0.1, 0.1, 3});
     write_spheres("tool.json", {{0, 0, 0, 2}});
     write_spheres("others.json", {{1, 0.05, 0.05, 0.9}});
-    write("robot.urdf", kRobot);
+    const std::string bar = "0.008 0.001 0.001";
+    const std::string shapes = box("visual", bar) + box("collision", bar);
+    write("robot.urdf", sliding("robot", shapes, shapes));
     write("path.csv", "0.2\n0.3\n");
-    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-      {"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -1]}}]})");
+    write("cell.json",
+          scene(R"({"name": "floor", "half_space": {}, "pose": {"position": [0, 0, -1]}})"));
     for (const char* folder :
          {".zfunc", ".config/fish/completions", ".local/share/bash-completion/completions"}) {
       std::filesystem::create_directories(folder_ / folder);
@@ -136,7 +104,7 @@ TEST_F(HelpTest, ExamplesRun) {
     for (const std::string& example : examples_in(text)) {
       ++count;
       const Outcome outcome = type(example);
-      EXPECT_EQ(outcome.exit_code, 0) << example << "\n" << outcome.out;
+      EXPECT_EQ(outcome.exit_code, 0) << example << "\n" << outcome.out << outcome.err;
     }
   }
   EXPECT_GE(count, 15u);
@@ -155,13 +123,14 @@ class CompletionTest : public CommandTest {
     std::filesystem::create_directory(folder_ / "parts");
   }
 
-  // What a shell prints, line by line, in the folder; without the command's own settings.
+  // What a shell prints, line by line, sorted; without its own settings.
   Words shell(const std::string& program, const std::string& script) {
     write(".script", script);
-    const std::string line =
-        "cd '" + folder_.string() + "' && " + program + " ./.script >.replies 2>.faults </dev/null";
-    EXPECT_EQ(std::system(line.c_str()), 0) << read(".faults");
-    return lines_of(read(".replies"));
+    const Outcome outcome = type(program + " ./.script </dev/null");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    Words replies = lines_of(outcome.out);
+    std::sort(replies.begin(), replies.end());
+    return replies;
   }
 
   // What bash offers for the last word of a command line; those before it are split at "=".
@@ -174,7 +143,6 @@ class CompletionTest : public CommandTest {
               "\n_spherule\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n";
     Words replies = shell("bash --norc --noprofile", script);
     std::erase(replies, "");
-    std::sort(replies.begin(), replies.end());
     return replies;
   }
 };
@@ -233,12 +201,15 @@ TEST_F(CompletionTest, BashCompletesValuesAndFiles) {
 }
 
 TEST_F(CompletionTest, FishCompletes) {
-  if (!is_installed("fish")) GTEST_SKIP() << "fish is not installed";
+  if (type("command -v fish").exit_code != 0) GTEST_SKIP() << "fish is not installed";
   const std::vector<std::pair<std::string, Words>> cases = {
       {"fi", "fit"},
       {"fit --meth", "--method"},
       {"fit --method ", "cover paper"},
+      {"fit --method=pa", "--method=paper"},
       {"fit --zones pa", "paper.txt part.stl parts/"},
+      {"fit --zones=pa", "--zones=paper.txt --zones=part.stl --zones=parts/"},
+      {"manual -o pa", "parts/"},
       {"fit pa", "part.stl parts/"},
       {"fit pap", "paper.txt"},
       {"completion ", "bash fish zsh"},
@@ -248,29 +219,32 @@ TEST_F(CompletionTest, FishCompletes) {
     Words words = shell("fish --no-config",
                         "source ./.completion.fish\ncomplete -C 'spherule " + line + "'\n");
     for (std::string& word : words) word = word.substr(0, word.find('\t'));
-    std::sort(words.begin(), words.end());
     EXPECT_EQ(words, offers) << line;
   }
 }
 
-TEST_F(CompletionTest, ZshReadsItsScript) {
-  if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
-  EXPECT_EQ(shell("zsh -f -n", read(".completion.zsh")), Words{});
-  EXPECT_TRUE(has(read(".completion.zsh"), "'*:command:(fit audit "));
+// What the script hands to zsh's own functions.
+TEST_F(CompletionTest, ZshCompletes) {
+  if (type("command -v zsh").exit_code != 0) GTEST_SKIP() << "zsh is not installed";
+  const std::string start =
+      "compdef() {}\ncompset() {}\n_describe() { print -rl -- ${${(P)2}%%:*} }\n"
+      "_files() { print -r -- $@ }\nsource ./.completion.zsh\n";
+  const std::vector<std::pair<std::string, Words>> cases = {
+      {"fi", "fit"},
+      {"fit --meth", "--method"},
+      {"fit --method=pa", "--method=paper"},
+      {"collide ''", {"-g *.(#i)(tree|tree)"}},
+      {"manual -o pa", "-/"},
+      {"completion ''", "bash fish zsh"}};
+  for (const auto& [line, offers] : cases) {
+    EXPECT_EQ(
+        shell("zsh -f", start + "words=(spherule " + line + ")\nCURRENT=$#words\n_spherule\n"),
+        offers)
+        << line;
+  }
 }
 
-class ManualTest : public CommandTest {
- protected:
-  // Pages that are made before and after midnight are to be equal.
-  void SetUp() override {
-    CommandTest::SetUp();
-    setenv("SOURCE_DATE_EPOCH", "86400", 1);
-  }
-  void TearDown() override {
-    unsetenv("SOURCE_DATE_EPOCH");
-    CommandTest::TearDown();
-  }
-};
+using ManualTest = CommandTest;
 
 TEST_F(ManualTest, EveryCommandHasAPageWithAllOfItsOptions) {
   expect_exit(0, "manual -o .");
@@ -290,23 +264,13 @@ TEST_F(ManualTest, EveryCommandHasAPageWithAllOfItsOptions) {
   }
 }
 
-TEST_F(ManualTest, TheDayIsThatOfSourceDateEpoch) {
-  EXPECT_TRUE(has(run("manual").out, "1970-01-02"));
-  for (const char* epoch : {"", "soon", "12x", "9223372036854775807", "99999999999999999999"}) {
-    setenv("SOURCE_DATE_EPOCH", epoch, 1);
-    expect_refusal("manual", "SOURCE_DATE_EPOCH: ");
-  }
-}
-
 TEST_F(ManualTest, FormattersFindNoFault) {
   expect_exit(0, "manual -o .");
-  const std::vector<std::pair<std::string, std::string>> formatters = {
-      {"groff", "groff -man -ww -Tutf8 -z"}, {"mandoc", "mandoc -T lint -W warning"}};
-  for (const auto& [program, check] : formatters) {
-    if (!is_installed(program)) continue;
-    const std::string line = "cd '" + folder_.string() + "' && " + check + " ./*.1 >.said 2>&1";
-    EXPECT_EQ(std::system(line.c_str()), 0);
-    EXPECT_EQ(read(".said"), "");
+  for (const std::string formatter : {"groff -man -ww -Tutf8 -z", "mandoc -T lint -W warning"}) {
+    if (type("command -v " + formatter.substr(0, formatter.find(' '))).exit_code != 0) continue;
+    const Outcome outcome = type(formatter + " ./*.1 2>&1");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.out, "");
   }
 }
 

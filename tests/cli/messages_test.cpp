@@ -2,7 +2,7 @@
 // What the commands for robots say on standard error: one line for each error, whatever names hold,
 // with the file in which a person has to look; and what they do not need.
 #include "tests/cli/command_test_support.h"
-#include "tests/support/child_process.h"
+#include "tests/cli/robot_fixtures.h"
 #include "tests/support/effort.h"
 
 #include <algorithm>
@@ -17,30 +17,23 @@ std::string urdf_of(const std::string& links, const std::string& robot = "r") {
   return "<robot name=\"" + robot + "\">" + links + "</robot>";
 }
 
-constexpr const char* kCube = R"(<geometry><box size="0.1 0.1 0.1"/></geometry>)";
-
-// A cube that slides, with a shape of its own to be seen.
-std::string sliding_cube(const std::string& visual, const std::string& collision) {
-  return urdf_of("<link name=\"base\"/><link name=\"hand\"><visual>" + visual +
-                 "</visual><collision>" + collision + R"(</collision></link>
-    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-      <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>)");
+std::string mesh(const std::string& kind, const std::string& name) {
+  return "<" + kind + "><geometry><mesh filename=\"" + name + "\"/></geometry></" + kind + ">";
 }
 
-std::string mesh(const std::string& name) {
-  return "<geometry><mesh filename=\"" + name + "\"/></geometry>";
-}
+const std::string kSeen = box("visual", "0.1 0.1 0.1");
+const std::string kSolid = box("collision", "0.1 0.1 0.1");
 
 class MessagesTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    write("empty.json", R"({"format": "spherule-scene", "version": 1})");
+    write("empty.json", scene(""));
     write("path.csv", "0\n1\n");
     write("hand.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.1]}})");
     write("two.json", R"({"hand": {"centers": [[0, 0, 0]], "radii": [0.1]},
                           "ghost": {"centers": [[0, 0, 0]], "radii": [0.1]}})");
-    write("cube.urdf", sliding_cube(kCube, kCube));
+    write("cube.urdf", sliding("r", "", kSeen + kSolid));
   }
   // A refusal that shows every character of the reason, and none that moves a cursor.
   void expect_readable(const Words& arguments, const std::string& reason) {
@@ -55,11 +48,8 @@ class MessagesTest : public CommandTest {
 // What is wrong is in the user's files, not in those that the command tries out; every message is
 // one line, whatever names hold.
 TEST_F(MessagesTest, NameTheUsersFileInOneLine) {
-  const std::string cube = std::string("<collision>") + kCube + "</collision>";
-  const std::string seen = std::string("<link name=\"base\"><visual>") + kCube + "</visual></link>";
-  const auto scene = [](const std::string& keys) {
-    return R"({"format": "spherule-scene", "version": 1, )" + keys + "}";
-  };
+  const std::string seen = "<link name=\"base\">" + kSeen + "</link>";
+  const auto with = [](const std::string& keys) { return scene("", keys); };
   const std::string none = "x.urdf: no link has collision geometry; --geometry visual takes";
   const std::string check = "check cube.urdf cell.json path.csv --spheres hand.json";
   write("cube.srdf", R"(<robot name="r"><disable_collisions link1="a" link2="b"/></robot>)");
@@ -74,21 +64,20 @@ TEST_F(MessagesTest, NameTheUsersFileInOneLine) {
       {"x.urdf", urdf_of(seen), "check-srdf x.urdf cube.srdf", none},
       {"x.urdf", urdf_of("<link name=\"b\"/>"), "robot x.urdf -o out --geometry visual",
        "x.urdf: no link has visual geometry"},
-      {"x.urdf", urdf_of("<link name=\"ba&#10;se\">" + cube + "</link>"),
+      {"x.urdf", urdf_of("<link name=\"ba&#10;se\">" + kSolid + "</link>"),
        "robot x.urdf -o out --effort 0",
        "out/r.curobo.yml: the name of a link, 'ba\\nse', holds a control character"},
       {"x.urdf",
-       urdf_of("<link name=\"li&#10;nk\"><collision>" + mesh("go&#27;ne.stl") +
-               "</collision></link>"),
+       urdf_of("<link name=\"li&#10;nk\">" + mesh("collision", "go&#27;ne.stl") + "</link>"),
        "robot x.urdf -o out", "x.urdf: line 1: link 'li\\nnk': "},
-      {"x.urdf", urdf_of("<link name=\"b\">" + cube + "</link>", "../b"),
+      {"x.urdf", urdf_of("<link name=\"b\">" + kSolid + "</link>", "../b"),
        "robot x.urdf -o out --format tree", "the name '../b' cannot be part of that of a file"},
-      {"cell.json", scene(R"("allowed_contacts": [{"body": "hnad", "other": "base"}])"), check,
+      {"cell.json", with(R"("allowed_contacts": [{"body": "hnad", "other": "base"}])"), check,
        "cell.json: hnad: there is no link or attached object of that name; did you mean hand?"},
-      {"cell.json", scene(R"("obsta\ncles": [])"), check, "cell.json: the key 'obsta\\ncles'"},
-      {"cell.json", scene(R"("obstcales": [])"), check, "did you mean obstacles?"},
+      {"cell.json", with(R"("obsta\ncles": [])"), check, "cell.json: the key 'obsta\\ncles'"},
+      {"cell.json", with(R"("obstcales": [])"), check, "did you mean obstacles?"},
       {"cell.json",
-       scene(R"("attached": [{"name": "t", "link": "gone", "tree": {"file": "t.tree"}}])"), check,
+       with(R"("attached": [{"name": "t", "link": "gone", "tree": {"file": "t.tree"}}])"), check,
        "cell.json: "},
       {"new\nline.stl", "nothing", {"info", "new\nline.stl"}, "spherule: new\\nline.stl: "},
       {"", "", {"info", "bell\a\x1b[31m\r\t\x7f.stl"}, "bell\\x07\\x1b[31m\\r\\t\\x7f.stl: "},
@@ -114,15 +103,13 @@ TEST_F(MessagesTest, NameTheUsersFileInOneLine) {
 
 // Whatever names a file holds, no character of the output is one that a terminal obeys.
 TEST_F(MessagesTest, StandardOutputHasNoControlCharacters) {
-  write("arm.urdf", urdf_of(R"(<link name="base"/><link name="ha&#10;nd"><collision>)" +
-                                std::string(kCube) + R"(</collision></link>
+  write("arm.urdf", urdf_of(R"(<link name="base"/><link name="ha&#10;nd">)" + kSolid + R"(</link>
     <joint name="sl&#127;ide" type="prismatic"><parent link="base"/><child link="ha&#10;nd"/>
       <axis xyz="1 0 0"/><limit lower="-0.5" upper="0.5" effort="1" velocity="1"/></joint>)",
                             "r&#27;[31mX&#7;"));
   write("arm.json", R"({"format": "spherule-robot-spheres", "version": 1, "robot": "r\u001b",
     "links": [{"link": "ha\nnd", "spheres": [{"center": [0, 0, 0], "radius": 0.05}]}]})");
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "wa\u009bll\u007f", "box": {"size": [1, 1, 1]}}]})");
+  write("cell.json", scene(R"({"name": "wa\u009bll\u007f", "box": {"size": [1, 1, 1]}})"));
   write("arm.srdf", R"(<robot name="r&#27;"><disable_collisions link1="base" link2="ha&#10;nd"/>
     <disable_collisions link1="a&#27;" link2="b"/></robot>)");
   write_spheres("spheres.json", {{0.0, 0.0, 0.0, 0.1}});
@@ -158,8 +145,7 @@ TEST_F(MessagesTest, AreExcerptsOfLongTexts) {
 }
 
 TEST_F(MessagesTest, WarningsAreOneLineToo) {
-  write("cube.urdf", urdf_of("<link name=\"ba&#10;se\"><collision>" + std::string(kCube) +
-                             R"(</collision></link><link name="hand"/>
+  write("cube.urdf", urdf_of("<link name=\"ba&#10;se\">" + kSolid + R"(</link><link name="hand"/>
     <joint name="slide" type="prismatic"><parent link="ba&#10;se"/><child link="hand"/>
       <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>)"));
   const Outcome outcome = run("check cube.urdf empty.json path.csv --spheres hand.json");
@@ -169,57 +155,48 @@ TEST_F(MessagesTest, WarningsAreOneLineToo) {
 
 // A mesh that is not used may be missing.
 TEST_F(MessagesTest, OnlyMeshesOfTheGeometryAreNeeded) {
-  const std::string missing = mesh("package://gone/hand.dae");
-  write("seen.urdf", sliding_cube(missing, kCube));
-  write("solid.urdf", sliding_cube(kCube, missing));
+  const std::string unseen = mesh("visual", "package://gone/hand.dae");
+  const std::string unsolid = mesh("collision", "package://gone/hand.dae");
+  write("seen.urdf", sliding("r", "", unseen + kSolid));
+  write("solid.urdf", sliding("r", "", kSeen + unsolid));
   write("cube.srdf", R"(<robot name="r"><disable_collisions link1="base" link2="hand"/></robot>)");
-  const std::vector<Words> commands = {
-      {"robot", "", "-o", "out", "--max-error", "0.04", "--effort", "0"},
-      {"check", "", "empty.json", "path.csv", "--max-error", "0.04", "--effort", "0"},
-      {"view", "", "-o", "page.html"},
-      {"check-srdf", "", "cube.srdf"},
-      {"audit-robot", "", "hand.json"}};
-  for (Words line : test::effort(commands, 4)) {
-    SCOPED_TRACE(line.front());
-    line[1] = "seen.urdf";
-    const Outcome outcome = expect_exit(0, line);
-    line[1] = "solid.urdf";
-    expect_refusal(line, "spherule: solid.urdf: line 1: link 'hand': <mesh>: package://gone");
-    line.insert(line.end(), {"--geometry", "visual"});
-    const Outcome visual = expect_exit(0, line);
-    line[1] = "seen.urdf";
-    expect_refusal(line, "spherule: seen.urdf: line 1: link 'hand': <mesh>: package://gone");
+  const std::vector<std::pair<std::string, std::string>> commands = {
+      {"robot ", " -o out --max-error 0.04 --effort 0"},
+      {"check ", " empty.json path.csv --max-error 0.04 --effort 0"},
+      {"view ", " -o page.html"},
+      {"check-srdf ", " cube.srdf"},
+      {"audit-robot ", " hand.json"}};
+  for (const auto& [command, more] : test::effort(commands, 4)) {
+    const std::string gone = ": line 1: link 'hand': <mesh>: package://gone";
+    const std::string visual = more + " --geometry visual";
+    expect_exit(0, command + "seen.urdf" + more);
+    expect_refusal(command + "solid.urdf" + more, "spherule: solid.urdf" + gone);
+    expect_exit(0, command + "solid.urdf" + visual);
+    expect_refusal(command + "seen.urdf" + visual, "spherule: seen.urdf" + gone);
   }
   expect_refusal("view seen.urdf -o page.html --geometry collision,visual", "package://gone");
   // With spheres that are given no mesh is read at all.
-  write("none.urdf", sliding_cube(missing, missing));
+  write("none.urdf", sliding("r", "", unseen + unsolid));
   expect_exit(0, "check none.urdf empty.json path.csv --spheres hand.json");
 }
 
 TEST_F(MessagesTest, SpheresOfLinksThatAreNotThereAreRefusedOrLeftOut) {
   const std::string what = "two.json: has spheres of 1 link that the robot has not got: 'ghost'";
-  const std::vector<Words> commands = {
-      {"check", "cube.urdf", "empty.json", "path.csv", "--spheres", ""},
-      {"view", "cube.urdf", "-o", "page.html", ""},
-      {"audit-robot", "cube.urdf", ""}};
-  for (Words line : test::effort(commands, 2)) {
-    SCOPED_TRACE(line.front());
-    line.back() = "two.json";
-    expect_refusal(line, "spherule: " + what + "; --ignore-unknown-links leaves them out\n");
-    line.push_back("--ignore-unknown-links");
-    const Outcome outcome = expect_exit(0, line);
-    EXPECT_EQ(outcome.err, "spherule: warning: " + what + "; they are left out\n");
-    *(line.end() - 2) = "hand.json";
-    EXPECT_EQ(run(line).err, "");
+  json others;
+  for (int i = 0; i < 8; ++i) others["link" + std::to_string(i)] = read_json("hand.json")["hand"];
+  write("others.json", others.dump());
+  const std::vector<std::string> commands = {"check cube.urdf empty.json path.csv --spheres ",
+                                             "view cube.urdf -o page.html ",
+                                             "audit-robot cube.urdf "};
+  for (const std::string& command : test::effort(commands, 2)) {
+    const std::string leave_out = " --ignore-unknown-links";
+    expect_refusal(command + "two.json",
+                   "spherule: " + what + "; --ignore-unknown-links leaves them out\n");
+    EXPECT_EQ(expect_exit(0, command + "two.json" + leave_out).err,
+              "spherule: warning: " + what + "; they are left out\n");
+    EXPECT_EQ(run(command + "hand.json" + leave_out).err, "");
     // If all are, the file is of another robot.
-    *(line.end() - 2) = "others.json";
-    std::string others;
-    for (int i = 0; i < 8; ++i) {
-      others += (i == 0 ? "{\"link" : ", \"link") + std::to_string(i) +
-                "\": {\"centers\": [[0, 0, 0]], \"radii\": [0.1]}";
-    }
-    write("others.json", others + "}");
-    expect_refusal(line,
+    expect_refusal(command + "others.json" + leave_out,
                    "spherule: others.json: has spheres of 8 links that the robot has not got: "
                    "'link0', 'link1', 'link2', 'link3', 'link4' and 3 more, and of no other\n");
   }
@@ -236,30 +213,24 @@ TEST_F(MessagesTest, OnlyRegularFilesAreReadForNamesInFiles) {
   for (const std::string shape :
        {R"("spheres": {"file": "pipe.json"})", R"("tree": {"file": "pipe"})",
         R"("points": {"file": "pipe.xyz", "radius": 0.1})", R"("mesh": {"file": "pipe"})"}) {
-    write("cell.json", R"({"format": "spherule-scene", "version": 1, "obstacles": [
-      {"name": "a", )" + shape +
-                           "}]}");
+    write("cell.json", scene(R"({"name": "a", )" + shape + "}"));
     expect_refusal("check cube.urdf cell.json path.csv --spheres hand.json", reason);
   }
-  write("cell.json", R"({"format": "spherule-scene", "version": 1, "robot": {"srdf": "pipe"}})");
+  write("cell.json", scene("", R"("robot": {"srdf": "pipe"})"));
   expect_refusal("check cube.urdf cell.json path.csv --spheres hand.json",
                  "spherule: pipe:" + reason);
 }
 
 // Nothing is written but what is asked for, so that there is nothing to leave behind.
 TEST_F(MessagesTest, NoFolderForTemporaryFilesIsNeeded) {
-  const auto run_in_shell = [&](const std::string& script) {
-    return finish(start_process("/bin/sh", {"-c", script, SPHERULE_COMMAND},
-                                {.folder = folder_, .out = ".out", .error = ".err"}));
-  };
-  const Outcome robot = run_in_shell(
-      "TMPDIR=/nonexistent exec \"$0\" robot cube.urdf -o out --max-error 0.04 --effort 0 --format "
+  const Outcome robot = type(
+      "TMPDIR=/nonexistent exec spherule robot cube.urdf -o out --max-error 0.04 --effort 0 "
+      "--format "
       "urdf --proofs none --postures 5");
   EXPECT_EQ(robot.exit_code, 0) << robot.err;
   write_spheres("spheres.json", {{0.0, 0.0, 0.0, 0.1}});
-  const Outcome tree = run_in_shell(
-      "here=$PWD; mkdir gone; cd gone; rmdir ../gone; exec \"$0\" tree \"$here/spheres.json\" -o "
-      "x.tree");
+  const Outcome tree = type(
+      "mkdir gone; cd gone; rmdir ../gone; exec spherule tree \"$HOME/spheres.json\" -o x.tree");
   EXPECT_EQ(tree.exit_code, 2);
   EXPECT_EQ(tree.err, "spherule: x.tree: no working directory: No such file or directory\n");
 }

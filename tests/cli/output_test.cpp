@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/cli/command_test_support.h"
+#include "tests/cli/robot_fixtures.h"
 #include "tests/support/effort.h"
 
 #include <algorithm>
 #include <chrono>
-#include <fcntl.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 namespace spherule {
 namespace {
@@ -22,6 +18,11 @@ class OutputTest : public CommandTest {
   void SetUp() override {
     CommandTest::SetUp();
     write_box("box.stl", {40, 20, 10});
+  }
+  void write_many(int count) {
+    std::vector<std::array<double, 4>> many;
+    for (int i = 0; i < count; ++i) many.push_back({1.0 * i, 0.5 * (i % 7), 0.0, 1.0});
+    write_spheres("many.json", many);
   }
 };
 
@@ -39,11 +40,7 @@ TEST_F(OutputTest, FailureLeavesTheOlderFile) {
 TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
   // Fine enough to take minutes, were it begun.
   const Words fit = "fit box.stl --max-error 0.01";
-  const auto with = [&](const Words& more) {
-    Words all = fit;
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  };
+  const auto with = [&](const Words& more) { return joined(fit, more); };
   expect_refusals({{with("-o nowhere/out.json"), "nowhere/out.json: no such folder"},
                    {with("-o out.json --report nowhere/r.json"), "nowhere/r.json: "},
                    {with("-o box.stl"), "box.stl: is named twice"},
@@ -57,35 +54,12 @@ TEST_F(OutputTest, PlacesAreCheckedBeforeTheWork) {
   EXPECT_EQ(files(), Words{"box.stl"});
 }
 
-// While it lives, this process and those that it starts have a limit of `amount`.
-class Limited {
- public:
-  Limited(int resource, rlim_t amount) : resource_(resource) {
-    EXPECT_EQ(::getrlimit(kind(), &old_), 0);
-    struct rlimit limit = old_;
-    limit.rlim_cur = amount;
-    EXPECT_EQ(::setrlimit(kind(), &limit), 0);
-  }
-  Limited(const Limited&) = delete;
-  Limited& operator=(const Limited&) = delete;
-  ~Limited() { EXPECT_EQ(::setrlimit(kind(), &old_), 0); }
-
- private:
-  __rlimit_resource kind() const { return static_cast<__rlimit_resource>(resource_); }
-
-  int resource_;
-  struct rlimit old_ = {};
-};
-
 TEST_F(OutputTest, ALimitOfFileSizesIsAnError) {
   write("out.tree", "precious");
-  std::vector<std::array<double, 4>> many;
-  for (int i = 0; i < 2000; ++i) many.push_back({1.0 * i, 0.0, 0.0, 1.0});
-  write_spheres("many.json", many);
-  {
-    const Limited file_size(RLIMIT_FSIZE, 4096);
-    expect_refusal("tree many.json -o out.tree", "out.tree: cannot be written: ");
-  }
+  write_many(2000);
+  const Outcome outcome = type("ulimit -f 8; exec spherule tree many.json -o out.tree");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(outcome.err.starts_with("spherule: out.tree: cannot be written: ")) << outcome.err;
   EXPECT_EQ(read("out.tree"), "precious");
   EXPECT_EQ(files(), (Words{"box.stl", "many.json", "out.tree"}));
 }
@@ -93,24 +67,18 @@ TEST_F(OutputTest, ALimitOfFileSizesIsAnError) {
 // At whatever allocation the memory ends, also among those that destructors make.
 TEST_F(OutputTest, RunningOutOfMemoryIsAnError) {
   if (test::kSanitized) GTEST_SKIP() << "the address sanitizer needs all of the address space";
-  std::vector<std::array<double, 4>> many;
-  for (int i = 0; i < 20000; ++i) many.push_back({1.0 * i, 0.0, 0.0, 1.0});
-  write_spheres("many.json", many);
-  constexpr rlim_t kMegabyte = 1U << 20U;
+  write_many(20000);
+  write("out.tree", "precious");
+  int megabytes = 8;
+  const auto type_limited = [&](const std::string& line) {
+    return type("ulimit -v " + std::to_string(1024 * megabytes++) + "; exec spherule " + line);
+  };
   // Libraries that are loaded do not always say what they lack.
-  rlim_t megabytes = 8;
-  for (;; ++megabytes) {
-    const Limited memory(RLIMIT_AS, megabytes * kMegabyte);
-    if (run("--version").exit_code == 0) break;
-  }
+  while (type_limited("--version").exit_code != 0) continue;
   int refused = 0;
-  for (bool done = false; !done; ++megabytes) {
-    write("out.tree", "precious");
-    const Limited memory(RLIMIT_AS, megabytes * kMegabyte);
-    const Outcome outcome = run("tree many.json -o out.tree");
-    done = outcome.exit_code == 0;
-    if (done) break;
-    ++refused;
+  for (;; ++refused) {
+    const Outcome outcome = type_limited("tree many.json -o out.tree");
+    if (outcome.exit_code == 0) break;
     ASSERT_EQ(outcome.exit_code, 2) << megabytes << " MB: " << outcome.err;
     EXPECT_EQ(outcome.err, "spherule: out of memory\n");
     EXPECT_EQ(read("out.tree"), "precious");
@@ -130,8 +98,7 @@ TEST_F(OutputTest, SuccessReplacesTheOlderFileAndLeavesNothingBeside) {
 TEST_F(OutputTest, InterruptionLeavesNoHalfWrittenFile) {
   write("out.json", "precious");
   for (const int milliseconds : {1, 20, 300}) {
-    const pid_t process = start(
-        {"fit", "box.stl", "-o", "out.json", "--max-error", "0.02", "--report", "report.json"});
+    const pid_t process = start("fit box.stl -o out.json --max-error 0.02 --report report.json");
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     kill(process, SIGINT);
     EXPECT_EQ(finish(process).exit_code, -SIGINT);
@@ -142,21 +109,12 @@ TEST_F(OutputTest, InterruptionLeavesNoHalfWrittenFile) {
 
 // Once there is a proved answer, an interruption of the search for a better one does not lose it.
 TEST_F(OutputTest, InterruptedSearchWritesWhatIsProved) {
-  for (int milliseconds = 500;; milliseconds *= 2) {
-    ASSERT_LT(milliseconds, 100000);
-    const pid_t process = start(
-        "fit box.stl -o out.json --max-error 2 --effort 1000000 --tree out.tree --report "
-        "report.json");
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    kill(process, SIGINT);
-    const Outcome outcome = finish(process);
-    ASSERT_EQ(outcome.exit_code, -SIGINT) << outcome.out << outcome.err;
-    if (!exists("out.json")) continue;  // there was no answer yet
-    EXPECT_TRUE(has(outcome.err, "spherule: interrupted: "));
-    EXPECT_TRUE(has(outcome.out, "(proved)"));
-    EXPECT_TRUE(has(outcome.out, "\ninterrupted: the search"));
-    break;
-  }
+  const Outcome outcome = interrupted(
+      "fit box.stl -o out.json --max-error 2 --effort 1000000 --tree out.tree --report report.json",
+      SIGINT, "out.json");
+  EXPECT_TRUE(has(outcome.err, "spherule: interrupted: "));
+  EXPECT_TRUE(has(outcome.out, "(proved)"));
+  EXPECT_TRUE(has(outcome.out, "\ninterrupted: the search"));
   EXPECT_EQ(files(), (Words{"box.stl", "out.json", "out.tree", "report.json"}));
   expect_exit(0, "audit box.stl out.json");
   // Who finds the files later is told.
@@ -184,9 +142,7 @@ TEST_F(OutputTest, WhatTheParentIgnoresStaysIgnored) {
 
 // Interrupted at any moment, a command that writes leaves the old file, or the new one whole.
 TEST_F(OutputTest, InterruptionWhileWriting) {
-  std::vector<std::array<double, 4>> many;
-  for (int i = 0; i < 4000; ++i) many.push_back({1.0 * i, 0.5 * (i % 7), 0.0, 1.0});
-  write_spheres("many.json", many);
+  write_many(4000);
   expect_exit(0, "tree many.json -o out.tree");
   const std::string whole = read("out.tree");
   for (int delay = 0; delay < 60; ++delay) {
@@ -207,53 +163,13 @@ class ProgressTest : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    const int master = posix_openpt(O_RDWR | O_NOCTTY);
-    if (master < 0) GTEST_SKIP() << "no pseudo-terminal can be opened";
-    close(master);
-  }
-
-  // What the command shows on a terminal that is its standard output and standard error.
-  std::string shown(const Words& arguments) {
-    const int master = posix_openpt(O_RDWR | O_NOCTTY);
-    EXPECT_GE(master, 0);
-    EXPECT_EQ(grantpt(master) + unlockpt(master), 0);
-    const std::string terminal = ptsname(master);
-    const pid_t process = fork();
-    EXPECT_GE(process, 0);
-    if (process < 0) {
-      close(master);
-      return {};
-    }
-    if (process == 0) {
-      const int slave = open(terminal.c_str(), O_RDWR | O_NOCTTY);
-      if (slave < 0 || chdir(folder_.c_str()) != 0) _exit(126);
-      dup2(slave, STDOUT_FILENO);
-      dup2(slave, STDERR_FILENO);
-      close(slave);
-      close(master);
-      std::vector<char*> argv = {const_cast<char*>(SPHERULE_COMMAND)};
-      for (const std::string& one : arguments) argv.push_back(const_cast<char*>(one.c_str()));
-      argv.push_back(nullptr);
-      execv(SPHERULE_COMMAND, argv.data());
-      _exit(127);
-    }
-    std::string text;
-    char buffer[4096];
-    // The terminal closes with the command: reading then fails.
-    for (ssize_t count = 0; (count = read_from(master, buffer)) > 0;) {
-      text.append(buffer, static_cast<std::size_t>(count));
-    }
-    int status = 0;
-    EXPECT_EQ(waitpid(process, &status, 0), process);
-    EXPECT_TRUE(WIFEXITED(status));
-    close(master);
-    return text;
+    if (type("script -qec true /dev/null").exit_code != 0) GTEST_SKIP() << "no pseudo-terminal";
   }
 
   // A bar is shown there, nothing is printed behind it on its line, and none in a pipe.
-  void expect_progress(const Words& arguments) {
-    const std::string text = shown(arguments);
-    const std::string name = arguments.front();
+  void expect_progress(const std::string& arguments) {
+    const std::string text = type("script -qec 'spherule " + arguments + "' /dev/null").out;
+    const std::string name = arguments;
     EXPECT_TRUE(has(text, kEraseLine)) << name;
     std::size_t at = 0;
     std::string last;
@@ -270,11 +186,6 @@ class ProgressTest : public CommandTest {
     EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << name;
     EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos) << name;
   }
-
- private:
-  static ssize_t read_from(int descriptor, char (&buffer)[4096]) {
-    return ::read(descriptor, buffer, sizeof buffer);
-  }
 };
 
 TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
@@ -282,8 +193,8 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
   expect_progress("fit part.stl -o part.json --max-error 2 --effort 2");
   if (!test::kSanitized) expect_progress("audit part.stl part.json");
 #ifdef SPHERULE_HAS_ROBOT
-  write("robot.urdf", R"(<robot name="robot"><link name="hand">
-    <collision><geometry><box size="0.02 0.001 0.001"/></geometry></collision></link></robot>)");
+  write("robot.urdf", R"(<robot name="robot"><link name="hand">)" +
+                          box("collision", "0.02 0.001 0.001") + "</link></robot>");
   expect_progress("robot robot.urdf -o . --effort 2");
   if (!test::kSanitized) expect_progress("audit-robot robot.urdf robot.curobo.yml");
 #endif
@@ -291,19 +202,15 @@ TEST_F(ProgressTest, LongCommandsShowABarOnATerminalOnly) {
 
 #ifdef SPHERULE_HAS_ROBOT
 TEST_F(ProgressTest, CheckShowsABarOnATerminalOnly) {
-  write("robot.urdf", R"(<robot name="robot"><link name="base"/><link name="hand">
-    <collision><geometry><box size="0.008 0.001 0.001"/></geometry></collision></link>
-    <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
-    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)");
-  write("cell.json", R"({"format": "spherule-scene", "version": 1})");
+  write("robot.urdf", sliding("robot", "", box("collision", "0.008 0.001 0.001")));
+  write("cell.json", scene(""));
   // More than are checked between two updates of the bar.
   std::string path;
   for (int i = 0; i < 600; ++i) path += std::to_string(i * 1e-3) + "\n";
   write("path.csv", path);
   expect_progress("check robot.urdf cell.json path.csv");
   expect_progress("check robot.urdf cell.json path.csv --edges");
-  const auto report =
-      nlohmann::json::parse(run("check robot.urdf cell.json path.csv --edges --json").out);
+  const json report = expect_json(0, "check robot.urdf cell.json path.csv --edges");
   EXPECT_EQ(report.at("motions"), 599);
   EXPECT_EQ(report.at("verdict"), "free");
 }

@@ -41,11 +41,35 @@ inline std::string gantry(const std::string& lower) {
 )";
 }
 
-// A wall of a millimetre at x = 0, and what else is given.
-inline std::string wall_and(const std::string& keys) {
-  return R"({"format": "spherule-scene", "version": 1, "obstacles": [
-    {"name": "wall", "box": {"size": [0.001, 1, 1]}}])" +
+// A URDF of a link `base` on which a link `hand` slides along x, with what is inside of both.
+inline std::string sliding(const std::string& robot, const std::string& base,
+                           const std::string& hand) {
+  return "<robot name=\"" + robot + "\"><link name=\"base\">" + base +
+         "</link><link name=\"hand\">" + hand + R"(</link>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="hand"/>
+    <axis xyz="1 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>)";
+}
+
+// A shape of a link; `kind` is "visual" or "collision".
+inline std::string box(const std::string& kind, const std::string& size) {
+  return "<" + kind + "><geometry><box size=\"" + size + "\"/></geometry></" + kind + ">";
+}
+
+// A scene with obstacles, and what else is given.
+inline std::string scene(const std::string& obstacles, const std::string& keys = "") {
+  return R"({"format": "spherule-scene", "version": 1, "obstacles": [)" + obstacles + "]" +
          (keys.empty() ? "" : ", " + keys) + "}";
+}
+
+// Obstacles: a wall of a millimetre at x = 0, and a ball.
+inline constexpr const char* kWall = R"({"name": "wall", "box": {"size": [0.001, 1, 1]}})";
+inline std::string ball(const std::string& name, const std::string& radius,
+                        const std::string& position) {
+  return R"({"name": ")" + name + R"(", "ball": {"radius": )" + radius +
+         R"(}, "pose": {"position": [)" + position + "]}}";
+}
+inline std::string wall_and(const std::string& keys) {
+  return scene(kWall, keys);
 }
 
 class CheckTest : public CommandTest {
@@ -62,7 +86,7 @@ class CheckTest : public CommandTest {
     return joined("check slider.urdf cell.json path.csv --spheres slider.json", more);
   }
   nlohmann::json checked(int exit_code, const Words& more = {}) {
-    return nlohmann::json::parse(expect_exit(exit_code, joined(command(more), "--json")).out);
+    return expect_json(exit_code, command(more));
   }
 };
 

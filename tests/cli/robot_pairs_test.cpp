@@ -15,25 +15,26 @@ using nlohmann::json;
 
 class RobotPairsTest : public CommandTest {
  protected:
-  Outcome cover(const Words& more = {}) {
-    return run(joined("robot gantry.urdf -o out --effort 0 --max-error 0.1 --postures 500", more));
+  // Covers the gantry whose slide goes that far down.
+  Outcome cover(const std::string& lower, const std::string& more = "") {
+    write("gantry.urdf", gantry(lower));
+    return expect_exit(
+        0, "robot gantry.urdf -o out --effort 0 --max-error 0.1 --postures 500 " + more);
   }
-  Outcome check(const Words& more, const std::string& path = "slide, turn\n0, 0\n0.1, 0.5\n") {
-    write("empty.json", R"({"format": "spherule-scene", "version": 1})");
+  Words check(const std::string& more, const std::string& path = "slide, turn\n0, 0\n0.1, 0.5\n") {
+    write("empty.json", scene(""));
     write("path.csv", path);
-    return run(joined(
-        {"check", "gantry.urdf", "empty.json", "path.csv", "--spheres", "out/gantry.spheres.json"},
-        more));
+    return "check gantry.urdf empty.json path.csv --spheres out/gantry.spheres.json " + more;
   }
 };
 
+constexpr const char* kNever = "Never (proved within the limits)";
+
 TEST_F(RobotPairsTest, PairsThatNeverTouchAreIgnoredWithTheReason) {
-  write("gantry.urdf", gantry("0"));
-  const Outcome result = cover();
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Outcome result = cover("0");
   EXPECT_EQ(result.err, "");
   EXPECT_TRUE(has(result.out, "pairs of links: 1 proved never to touch"));
-  const std::string reason = "Never (proved within the limits)";
+  const std::string reason = kNever;
   EXPECT_TRUE(
       has(read("out/gantry.srdf"), R"(link1="block" link2="tool" reason=")" + reason + "\""));
   for (const char* const file : {"out/gantry.curobo.yml", "out/gantry.xrdf"}) {
@@ -46,65 +47,78 @@ TEST_F(RobotPairsTest, PairsThatNeverTouchAreIgnoredWithTheReason) {
   EXPECT_TRUE(report["posture_contacts"].empty());
 }
 
-TEST_F(RobotPairsTest, CheckTakesTheProofs) {
-  write("gantry.urdf", gantry("-0.05"));
-  const Outcome result = cover();
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+// Of an SRDF the comments stay; written into a second time, no file changes.
+TEST_F(RobotPairsTest, FilesThatAreKeptGetThePairsOnce) {
+  write("my.srdf", "<robot name=\"gantry\">\n  <!-- mine -->\n</robot>\n");
+  write("my.yml", "kinematics:\n  collision_link_names: [tool]\n  collision_spheres:\n");
+  write("my.xrdf",
+        "format: xrdf\nformat_version: 1.0\ncollision: {geometry: g}\nself_collision:\n"
+        "  geometry: g\n  ignore:\n    tool: [other]\ngeometry:\n  g:\n    spheres: {}\n");
+  cover("0", "--srdf my.srdf --curobo my.yml --xrdf my.xrdf");
+  std::vector<std::string> texts;
+  for (const std::string ending : {"srdf", "curobo.yml", "xrdf"}) {
+    texts.push_back(read("out/gantry." + ending));
+    write("again." + ending, texts.back());
+  }
+  EXPECT_TRUE(has(texts[0], "<!-- mine -->") && has(texts[0], kNever));
+  EXPECT_TRUE(has(texts[1], "  self_collision_ignore:\n    tool: [block]\n"));
+  EXPECT_TRUE(has(texts[2], "    tool: [other]\n    block: [tool]\n"));
+  cover("0", "--srdf again.srdf --curobo again.curobo.yml --xrdf again.xrdf");
+  for (const std::string ending : {"srdf", "curobo.yml", "xrdf"}) {
+    EXPECT_EQ(read("out/gantry." + ending), read("again." + ending));
+  }
+}
+
+TEST_F(RobotPairsTest, ContactsInThePosturesThatHaveANameAreWarnings) {
+  write("gantry.srdf", R"(<robot name="gantry"><group name="all"><joint name="slide"/></group>
+<group_state name="home" group="all"><joint name="slide" value="-0.04"/></group_state></robot>)");
+  EXPECT_TRUE(has(cover("-0.05", "--srdf gantry.srdf").err,
+                  "in all/home tool and block touch, by their meshes, too"));
+  EXPECT_TRUE(has(cover("0", "--proofs none").err,
+                  "in the zero posture tool and block touch by their spheres alone"));
+}
+
+TEST_F(RobotPairsTest, CheckTakesTheProofsAndSaysOfWhatKindPairsAre) {
+  const Outcome result = cover("-0.05");
   EXPECT_TRUE(has(result.err, "free for who takes the proofs"));
   EXPECT_TRUE(has(result.out, "--pairs out/gantry.pairs"));
   const json pair = read_json("out/gantry.report.json")["link_pairs"]["pairs"][0];
   EXPECT_EQ(pair["verdict"], "touching");
   EXPECT_LT(pair["witness"]["slide"], -0.0199);
 
-  EXPECT_EQ(check("--edges").exit_code, 1);
-  const Outcome proved = check("--edges --pairs out/gantry.pairs");
-  EXPECT_EQ(proved.exit_code, 0);
-  EXPECT_TRUE(
-      has(proved.out, "free though spheres overlap: tool and block (free in boxes), in 2 of 2"));
-  // For other limits nothing was proved.
-  write("gantry.urdf", gantry("-0.06"));
-  const Outcome other = check("--pairs out/gantry.pairs");
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_TRUE(has(other.err, "the limits of joint 'slide' are wider"));
-}
-
-TEST_F(RobotPairsTest, CheckSaysOfWhatKindPairsAre) {
-  write("gantry.urdf", gantry("-0.05"));
-  ASSERT_EQ(cover().exit_code, 0);
+  expect_exit(1, check("--edges"));
+  EXPECT_TRUE(has(expect_exit(0, check("--edges --pairs out/gantry.pairs")).out,
+                  "free though spheres overlap: tool and block (free in boxes), in 2 of 2"));
   const std::string path = "slide, turn\n-0.04, 0\n0, 0\n";
-  const Outcome table = check("--pairs out/gantry.pairs", path);
-  EXPECT_EQ(table.exit_code, 1);
-  EXPECT_TRUE(has(table.out, "kind\n"));
-  EXPECT_TRUE(has(table.out, "  can touch\n"));
-  const json found = json::parse(check("--pairs out/gantry.pairs --json", path).out);
+  EXPECT_TRUE(has(expect_exit(1, check("--pairs out/gantry.pairs", path)).out, "  can touch\n"));
+  const json found = expect_json(1, check("--pairs out/gantry.pairs", path));
   ASSERT_EQ(found["pairs"].size(), 1U);
   EXPECT_EQ(found["pairs"][0]["count"], 1);
   EXPECT_EQ(found["pairs"][0]["kind"], "can touch");
   ASSERT_EQ(found["proved_free"].size(), 1U);
   EXPECT_EQ(found["proved_free"][0]["count"], 1);
   EXPECT_EQ(found["proved_free"][0]["kind"], "free in boxes");
-  const json without = json::parse(check("--json", path).out);
+  const json without = expect_json(1, check("", path));
   EXPECT_EQ(without["pairs"][0]["count"], 2);
   EXPECT_FALSE(without["pairs"][0].contains("kind"));
   EXPECT_TRUE(without["proved_free"].empty());
-}
 
-TEST_F(RobotPairsTest, TheClearanceOfThePageIsOfWhatIsNotProved) {
-  write("gantry.urdf", gantry("-0.05"));
-  ASSERT_EQ(cover().exit_code, 0);
-  const auto page = [&](Words more) {
-    more.insert(more.end(), {"--view", "page.html"});
-    check(more, "slide, turn\n-0.04, 0\n0, 0\n");
-    return scene_of(read("page.html")).at("trajectory");
+  // The clearance of the page is of what is not proved: the first configuration is in contact, the
+  // second is proved free, and there are no others.
+  const auto clearance = [&](const std::string& more, bool is_skipped) {
+    expect_exit(1, check(more + " --view page.html", path));
+    const json trajectory = scene_of(read("page.html")).at("trajectory");
+    EXPECT_EQ(trajectory.at("skipped"), is_skipped);
+    return floats_of(trajectory.at("clearance"));
   };
-  const json spheres = page({});
-  EXPECT_EQ(spheres.at("skipped"), false);
-  EXPECT_EQ(floats_of(spheres.at("clearance")), (std::vector<float>{0.0F, 0.0F}));
-  // The first configuration is in contact, the second is proved free, and there are no others.
-  const json proved = page("--pairs out/gantry.pairs");
-  EXPECT_EQ(proved.at("skipped"), true);
-  EXPECT_EQ(floats_of(proved.at("clearance")),
+  EXPECT_EQ(clearance("", false), (std::vector<float>{0.0F, 0.0F}));
+  EXPECT_EQ(clearance("--pairs out/gantry.pairs", true),
             (std::vector<float>{0.0F, std::numeric_limits<float>::infinity()}));
+
+  // For other limits nothing was proved.
+  write("gantry.urdf", gantry("-0.06"));
+  EXPECT_TRUE(has(expect_exit(2, check("--pairs out/gantry.pairs")).err,
+                  "the limits of joint 'slide' are wider"));
 }
 
 TEST_F(RobotPairsTest, AuditTellsPairsApart) {
@@ -112,15 +126,13 @@ TEST_F(RobotPairsTest, AuditTellsPairsApart) {
   const auto audit = [&](const Words& more) {
     return run(joined("audit-robot gantry.urdf out/gantry.spheres.json", more));
   };
-  write("gantry.urdf", gantry("0"));
-  ASSERT_EQ(cover().exit_code, 0);
+  cover("0");
   const Outcome never = audit("--pairs out/gantry.pairs");
   EXPECT_EQ(never.exit_code, 0) << never.err;
   EXPECT_TRUE(has(never.out, "pairs of links: 1; 1 proved never\n"));
   EXPECT_TRUE(has(never.out, "block  tool  proved never  never   100.0 %\n"));
 
-  write("gantry.urdf", gantry("-0.05"));
-  ASSERT_EQ(cover().exit_code, 0);
+  cover("-0.05");
   write("gantry.srdf", R"(<robot name="gantry">
 <disable_collisions link1="tool" link2="block" reason="Never"/></robot>)");
   const json boxes = json::parse(audit("--pairs out/gantry.pairs --json").out)["pairs"][0];
@@ -138,16 +150,13 @@ TEST_F(RobotPairsTest, AuditTellsPairsApart) {
 }
 
 TEST_F(RobotPairsTest, ThePageHasThePairsOfTheFirstSpheres) {
-  const auto page = [&](const Words& more) {
-    Words line = joined("view gantry.urdf out/gantry.spheres.json", more);
-    line.insert(line.end(), {"-o", "page.html"});
-    const Outcome result = expect_exit(0, line);
+  const auto page = [&](const std::string& more) {
+    expect_exit(0, "view gantry.urdf out/gantry.spheres.json -o page.html " + more);
     return scene_of(read("page.html"))["robot"];
   };
-  write("gantry.urdf", gantry("-0.05"));
-  ASSERT_EQ(cover().exit_code, 0);
-  EXPECT_EQ(page({})["pairs"], json::parse(R"([{"links": [0, 2], "kind": "tested"}])"));
-  EXPECT_EQ(page({})["pairs_of"], "out/gantry.spheres.json");
+  cover("-0.05");
+  EXPECT_EQ(page("")["pairs"], json::parse(R"([{"links": [0, 2], "kind": "tested"}])"));
+  EXPECT_EQ(page("")["pairs_of"], "out/gantry.spheres.json");
   const json pair = page("out/gantry.pairs")["pairs"][0];
   EXPECT_EQ(pair["kind"], "free in boxes");
   EXPECT_EQ(pair["verdict"], "touching");
@@ -164,16 +173,14 @@ TEST_F(RobotPairsTest, ThePageHasThePairsOfTheFirstSpheres) {
   EXPECT_EQ(given["kind"], "given");
   EXPECT_EQ(given["verdict"], "touching");
   EXPECT_FALSE(given.contains("boxes"));
-  const Outcome bare = expect_exit(2, "view gantry.urdf out/gantry.pairs -o page.html");
-  EXPECT_TRUE(has(bare.err, "name a file of them"));
+  expect_said(2, "view gantry.urdf out/gantry.pairs -o page.html", "name a file of them");
 }
 
 TEST_F(RobotPairsTest, DisabledPairsThatTouchAreAWarning) {
-  write("gantry.urdf", gantry("-0.05"));
   const auto warnings = [&](const std::string& reason) {
     write("gantry.srdf", R"(<robot name="gantry"><disable_collisions link1="tool" link2="block")" +
                              reason + "/></robot>");
-    return cover("--srdf gantry.srdf").err;
+    return cover("-0.05", "--srdf gantry.srdf").err;
   };
   EXPECT_TRUE(has(warnings(R"( reason="Never")"),
                   R"(the SRDF disables tool and block ("Never"), which touch at slide -0.0)"));
@@ -199,6 +206,18 @@ std::string fan() {
   return text + "</robot>";
 }
 
+// At most five warnings of a kind, and one that counts the rest; the report has all.
+TEST_F(RobotPairsTest, ManyContactsAtRestAreAFewWarnings) {
+  write("fan.urdf", fan());
+  const Outcome result = expect_exit(
+      0, "robot fan.urdf -o out --effort 0 --max-error 0.05 --postures 10 --proofs none");
+  const std::size_t contacts = read_json("out/fan.report.json")["posture_contacts"].size();
+  ASSERT_GT(contacts, 10U);
+  EXPECT_EQ(lines_of(result.err).size(), 6U) << result.err;
+  EXPECT_TRUE(has(result.err, "so do " + std::to_string(contacts - 5) + " more pairs"));
+  EXPECT_TRUE(exists("out/fan.r%2F0.tree") && exists("out/fan.2.tree"));
+}
+
 TEST_F(RobotPairsTest, LinksWhoseTreesWouldBeOneFileAreRefused) {
   std::string text = fan();
   const std::string name = "'2'";
@@ -206,8 +225,7 @@ TEST_F(RobotPairsTest, LinksWhoseTreesWouldBeOneFileAreRefused) {
     text.replace(at, name.size(), "'r%2F1'");
   }
   write("fan.urdf", text);
-  const Outcome result = expect_exit(2, "robot fan.urdf -o out --format tree");
-  EXPECT_TRUE(has(result.err, "fan.r%2F1.tree: is a file of two links"));
+  expect_said(2, "robot fan.urdf -o out --format tree", "fan.r%2F1.tree: is a file of two links");
 }
 
 // A cart that is driven against a block from 0.1 m on.
@@ -258,16 +276,14 @@ TEST_F(CheckSrdfTest, SaysWhatTouchesAndWhere) {
 
 // No time is enough for nothing: what is not proved is not confirmed.
 TEST_F(CheckSrdfTest, WhatIsNotProvedIsNotConfirmed) {
-  const Outcome result = judge("Never", {"--seconds", "1e-9"});
+  const Outcome result = judge("Never", "--seconds 1e-9");
   EXPECT_EQ(result.exit_code, 1) << result.out;
   EXPECT_TRUE(has(result.out, "neither proved nor touching:\n  block and cart (\"Never\")"));
-  EXPECT_EQ(judge("User", {"--seconds", "1e-9"}).exit_code, 0);
+  EXPECT_EQ(judge("User", "--seconds 1e-9").exit_code, 0);
 }
 
 TEST_F(CheckSrdfTest, TellsItInJson) {
-  const Outcome result = judge("Never", {"--json"});
-  EXPECT_EQ(result.exit_code, 1);
-  const json found = json::parse(result.out);
+  const json found = json::parse(judge("Never", {"--json"}).out);
   ASSERT_EQ(found["pairs"].size(), 2U);
   EXPECT_EQ(found["pairs"][0]["verdict"], "touches");
   EXPECT_TRUE(found["pairs"][0]["wrong"]);
@@ -277,8 +293,7 @@ TEST_F(CheckSrdfTest, TellsItInJson) {
 }
 
 TEST_F(CheckSrdfTest, BadInputIsRefused) {
-  const Outcome result = expect_exit(2, "check-srdf rail.urdf rail.urdf");
-  EXPECT_TRUE(has(result.err, "rail.urdf: it disables no pair of links"));
+  expect_said(2, "check-srdf rail.urdf rail.urdf", "rail.urdf: it disables no pair of links");
 }
 
 }  // namespace

@@ -9,14 +9,12 @@
 #include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <signal.h>
-#include <thread>
 #include <variant>
 
 namespace spherule {
@@ -176,9 +174,8 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
   EXPECT_TRUE(has(table.out, "total"));
 
   const std::string spheres = read("out/arm_1.spheres.json");
-  const Outcome again = expect_exit(0, command("--json --format json --threads 1"));
+  const json summary = expect_json(0, command("--format json --threads 1"));
   EXPECT_EQ(read("out/arm_1.spheres.json"), spheres) << "equal bytes";
-  const json summary = json::parse(again.out);
   EXPECT_EQ(summary.at("robot"), "arm_1");
   EXPECT_EQ(summary.at("geometry"), "collision");
   EXPECT_EQ(summary.at("total").at("covered"), true);
@@ -217,21 +214,14 @@ TEST_F(RobotTest, TellsInTableJsonAndReportWhatIsProved) {
 
 TEST_F(RobotTest, InterruptedSearchWritesWhatIsProvedOfEveryLink) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
-  for (int milliseconds = 500;; milliseconds *= 2) {
-    ASSERT_LT(milliseconds, 100000);
-    const pid_t process = start(
-        "robot arm.urdf -o out --max-error 0.015 --effort 1000000 --package parts=parts --proofs "
-        "none --format json");
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    kill(process, SIGTERM);
-    const Outcome outcome = finish(process);
-    ASSERT_EQ(outcome.exit_code, -SIGTERM) << outcome.out << outcome.err;
-    if (!exists("out/arm_1.report.json")) continue;  // no link was begun yet
-    EXPECT_TRUE(has(outcome.err, "spherule: interrupted: "));
-    EXPECT_TRUE(has(outcome.out, " *\n"));
-    EXPECT_TRUE(has(outcome.out, "\n* interrupted: the search"));
-    break;
-  }
+  const Outcome outcome = interrupted(
+      "robot arm.urdf -o out --max-error 0.015 --effort 1000000 --package parts=parts --proofs "
+      "none "
+      "--format json",
+      SIGTERM, "out/arm_1.report.json");
+  EXPECT_TRUE(has(outcome.err, "spherule: interrupted: "));
+  EXPECT_TRUE(has(outcome.out, " *\n"));
+  EXPECT_TRUE(has(outcome.out, "\n* interrupted: the search"));
   const json report = read_json("out/arm_1.report.json");
   EXPECT_EQ(report.at("interrupted"), true);
   // The search of a simple link may be done before.
@@ -277,10 +267,9 @@ TEST_F(RobotTest, OptionsOfOneLinkAndOfAnSrdfCount) {
   write("arm.srdf", R"(<robot name="arm_1"><group name="hand"><link name="finger"/></group>
     <disable_collisions link1="finger" link2="base" reason="Never"/>
     <disable_collisions link1="finger" link2="tool of another" reason="Never"/></robot>)");
-  const Outcome result = expect_exit(
-      0, command("--json --srdf arm.srdf --format srdf,curobo --tool-link flange --link "
-                 "finger:max-error=0.03,min-external=0.06,padding=0.005"));
-  const json summary = json::parse(result.out);
+  const json summary =
+      expect_json(0, command("--srdf arm.srdf --format srdf,curobo --tool-link flange --link "
+                             "finger:max-error=0.03,min-external=0.06,padding=0.005"));
   EXPECT_EQ(summary.at("links").at(0).at("options").at("max-error"), 0.06);
   const json& finger = summary.at("links").at(3);
   EXPECT_EQ(finger.at("link"), "finger");
@@ -349,15 +338,15 @@ TEST_F(RobotTest, NothingThatIsReadIsOverwritten) {
                  "arm_1.spheres.urdf: is named twice");
   EXPECT_EQ(read("arm_1.spheres.urdf"), kRobot);
   const auto expect_kept = [&](const std::string& file, const Words& more) {
-    Words line = joined("robot arm_1.spheres.urdf -o out --package parts=parts", more);
-    expect_refusal(line, file + ": is named twice");
+    expect_refusal(joined("robot arm_1.spheres.urdf -o out --package parts=parts", more),
+                   file + ": is named twice");
   };
-  expect_kept("poses.csv", {"--poses", "poses.csv", "--view", "poses.csv"});
+  expect_kept("poses.csv", "--poses poses.csv --view poses.csv");
   write("z.json", R"({"format":"spherule-zones","version":1,"zones":[
     {"shape":"ball","center":[0,0,0],"radius":0.1,"max_error":0.005}]})");
-  expect_kept("./z.json", {"--link", "base:padding=0.01,zones=z.json", "--view", "./z.json"});
+  expect_kept("./z.json", "--link base:padding=0.01,zones=z.json --view ./z.json");
   fs::create_directory(folder_ / "out");
-  expect_kept("out/arm_1.report.json", {"--view", "out/arm_1.report.json"});
+  expect_kept("out/arm_1.report.json", "--view out/arm_1.report.json");
 }
 
 class RobotFalseAlarmsTest : public CommandTest {
@@ -393,8 +382,7 @@ TEST_F(RobotFalseAlarmsTest, MeasuresAndNamesThePair) {
 }
 
 TEST_F(RobotFalseAlarmsTest, ProofsSpareThePair) {
-  const Outcome result = expect_exit(0, command("--json"));
-  const json found = json::parse(result.out)["false_alarms"];
+  const json found = expect_json(0, command({}))["false_alarms"];
   EXPECT_EQ(found["proofs"], "boxes");
   EXPECT_EQ(found["refused"], 0);
   EXPECT_EQ(found["share_with_proofs"]["never"], 0.0);
@@ -404,9 +392,8 @@ TEST_F(RobotFalseAlarmsTest, ProofsSpareThePair) {
 TEST_F(RobotFalseAlarmsTest, ReachesAGoal) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   write("poses.csv", "turn, slide\n0, 0.3\n0.5, 0.4\n");
-  const Outcome result =
-      expect_exit(0, command("--proofs none --false-alarms 20% --poses poses.csv"));
-  EXPECT_TRUE(has(result.out, "goal 20.00 %: reached"));
+  expect_said(0, command("--proofs none --false-alarms 20% --poses poses.csv"),
+              "goal 20.00 %: reached");
   const json report = read_json("out/gantry.report.json");
   const json& found = report["false_alarms"];
   EXPECT_EQ(found["postures"], 10000);  // of the verification
@@ -463,23 +450,14 @@ class XacroCommand : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    path_ = std::getenv("PATH");
+    environment_ = {"PATH=" + folder_.string() + ":" + std::getenv("PATH")};
     write("xacro", "#!/bin/sh\nsed -n 's/^made: //p' \"$1\"\n");
     fs::permissions(folder_ / "xacro", fs::perms::owner_all);
-    ::setenv("PATH", (folder_.string() + ":" + path_).c_str(), 1);
     // All its links are in what xacro makes.
     write("arm.urdf.xacro",
-          "<robot name=\"raw\"><xacro:arm/>\n"
-          "made: <robot name=\"arm\"><link name=\"base\"><collision><geometry>"
-          "<box size=\"1 0.01 0.01\"/></geometry></collision></link></robot>\n</robot>\n");
+          "<robot name=\"raw\"><xacro:arm/>\nmade: <robot name=\"arm\"><link name=\"base\">" +
+              box("collision", "1 0.01 0.01") + "</link></robot>\n</robot>\n");
   }
-  void TearDown() override {
-    ::setenv("PATH", path_.c_str(), 1);
-    CommandTest::TearDown();
-  }
-
- private:
-  std::string path_;
 };
 
 TEST_F(XacroCommand, TakesItAsTheUrdf) {
@@ -487,8 +465,7 @@ TEST_F(XacroCommand, TakesItAsTheUrdf) {
   const std::string urdf = read("arm-spheres/arm.spheres.urdf");
   EXPECT_TRUE(has(urdf, "<sphere radius"));
   EXPECT_FALSE(has(urdf, "xacro"));
-  const Outcome info = expect_exit(0, "info arm.urdf.xacro");
-  EXPECT_TRUE(has(info.out, "arm"));
+  expect_said(0, "info arm.urdf.xacro", "arm");
   expect_exit(0, "view arm.urdf.xacro arm-spheres/arm.spheres.json -o arm.html");
   expect_exit(0, "audit-robot arm.urdf.xacro arm-spheres/arm.spheres.urdf");
 }
@@ -497,13 +474,8 @@ TEST_F(XacroCommand, TakesItAsTheUrdf) {
 TEST_F(XacroCommand, TheCuroboFileNamesTheUrdfThatIsWritten) {
   if (test::kSanitized) GTEST_SKIP() << test::kLeftToRelease;
   const Words cover = "robot arm.urdf.xacro --max-error 0.2 --effort 0";
-  const auto run_with = [&](const Words& more) {
-    Words line = cover;
-    line.insert(line.end(), more.begin(), more.end());
-    const Outcome outcome = expect_exit(0, line);
-    return outcome.err;
-  };
-  for (const Words& more : {Words{}, {"--format", "curobo,urdf"}}) {
+  const auto run_with = [&](const Words& more) { return expect_exit(0, joined(cover, more)).err; };
+  for (const Words& more : {Words{}, Words("--format curobo,urdf")}) {
     EXPECT_FALSE(has(run_with(more), "cuRobo"));
     const std::string file = read("arm-spheres/arm.curobo.yml");
     EXPECT_TRUE(has(file, "urdf_path: arm-spheres/arm.spheres.urdf\n"));
@@ -523,7 +495,7 @@ TEST_F(XacroCommand, TheCuroboFileNamesTheUrdfThatIsWritten) {
 TEST_F(XacroCommand, RunsWhereTheParentIgnoresTheEndsOfChildren) {
   const Outcome outcome = finish(start_process(
       "/usr/bin/env", {"--ignore-signal=CHLD", SPHERULE_COMMAND, "info", "arm.urdf.xacro"},
-      {.folder = folder_, .out = ".out", .error = ".err"}));
+      {.folder = folder_, .out = ".out", .error = ".err", .environment = environment_}));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 

@@ -18,8 +18,7 @@ class WrongFileTest : public CommandTest {
   }
 
   void expect_info(const std::string& file, const std::string& text) {
-    const Outcome info = expect_exit(0, {"info", file});
-    EXPECT_TRUE(has(info.out, text));
+    expect_said(0, {"info", file}, text);
   }
 };
 

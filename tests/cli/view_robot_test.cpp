@@ -41,10 +41,8 @@ class ViewRobotTest : public CommandTest {
           "  base:\n  - center: [0, 0, 0]\n    radius: 0.31\n"
           "  boom:\n  - center: [0.4, 0, 0]\n    radius: 0.2\n");
   }
-  json scene(Words arguments) {
-    arguments.insert(arguments.begin(), "view");
-    arguments.insert(arguments.end(), {"-o", "page.html"});
-    const Outcome view = expect_exit(0, arguments);
+  json scene(const std::string& arguments) {
+    expect_exit(0, "view " + arguments + " -o page.html");
     return scene_of(read("page.html"));
   }
 };
@@ -157,9 +155,8 @@ TEST_F(ViewRobotTest, AnAuditWritesItsPage) {
 }
 
 TEST_F(ViewRobotTest, ACoverWritesItsPage) {
-  const Outcome cover =
-      expect_exit(0, "robot arm.urdf -o out --max-error 0.05 --effort 0 --view page.html");
-  EXPECT_TRUE(has(cover.out, "page: page.html ("));
+  expect_said(0, "robot arm.urdf -o out --max-error 0.05 --effort 0 --view page.html",
+              "page: page.html (");
   const json items = scene_of(read("page.html")).at("items");
   ASSERT_EQ(items.size(), 3u);
   EXPECT_EQ(items[1].at("name"), "spheres of arm");
@@ -196,11 +193,8 @@ constexpr double kReach = 0.0505;
 
 class ViewCheckTest : public CheckTest {
  protected:
-  json page_of(int exit_code, Words more) {
-    more.insert(more.end(), {"--view", "page.html"});
-    const Outcome outcome = run(command(more));
-    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
-    EXPECT_TRUE(has(outcome.out, "page: page.html ("));
+  json page_of(int exit_code, const std::string& more) {
+    expect_said(exit_code, command(more + " --view page.html"), "page: page.html (");
     return scene_of(read("page.html"));
   }
 };
@@ -308,7 +302,7 @@ TEST_F(ViewCheckTest, LongTrajectoriesAreThinnedOut) {
   for (int i = 0; i <= 20000; ++i) path += i == 7 ? "0.03 0\n" : "1 0\n";
   write("path.csv", path);
   for (const bool edges : {false, true}) {
-    const json trajectory = page_of(1, edges ? Words{"--edges"} : Words()).at("trajectory");
+    const json trajectory = page_of(1, edges ? "--edges" : "").at("trajectory");
     EXPECT_EQ(trajectory.at("configurations"), 20001);
     EXPECT_EQ(trajectory.at("shown"), 6668);
     const std::string verdicts = trajectory.at("verdicts");

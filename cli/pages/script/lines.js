@@ -48,30 +48,11 @@ function make_line_material(width, lift, obeys_cut) {
   });
 }
 
-function line_geometry(ends) {
-  const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute("position", sphere_square);
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  const both = new THREE.InstancedInterleavedBuffer(ends, 6, 1);
-  geometry.setAttribute("begin", new THREE.InterleavedBufferAttribute(both, 3, 0));
-  geometry.setAttribute("end", new THREE.InterleavedBufferAttribute(both, 3, 3));
-  geometry.maxInstancedCount = geometry.instanceCount = ends.length / 6;
-  return geometry;
-}
-
 // Of x, y, z of both ends a line.
 function make_lines(ends, material, order) {
-  const lines = new THREE.Mesh(line_geometry(ends), material);
-  lines.frustumCulled = false;
-  lines.renderOrder = order;
+  const lines = make_drawing(make_squares(ends, {begin: 3, end: 3}), material, order);
   lines.visible = ends.length > 0;
   return lines;
-}
-function replace_lines(lines, ends) {
-  if (ends.length === 0 && !lines.visible) return;
-  lines.geometry.dispose();
-  lines.geometry = line_geometry(ends);
-  lines.visible = ends.length > 0;
 }
 
 // Where a plane of three.js meets triangles: x, y, z of both ends for each that it crosses.

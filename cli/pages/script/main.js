@@ -18,9 +18,9 @@ function refresh() {
 function draw() {
   drawing = false;
   const ratio = Math.min(devicePixelRatio || 1, 2);
-  if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
   const size = renderer.getSize(new THREE.Vector2());
-  if (size.x !== innerWidth || size.y !== innerHeight) {
+  if (renderer.getPixelRatio() !== ratio || size.x !== innerWidth || size.y !== innerHeight) {
+    renderer.setPixelRatio(ratio);
     renderer.setSize(innerWidth, innerHeight, false);
   }
   renderer.getDrawingBufferSize(shared_uniforms.viewport.value);
@@ -28,14 +28,14 @@ function draw() {
   fit_view();
   place_clipping_planes();
   camera.updateMatrixWorld(true);
-  place_cut(camera);
+  place_cut();
   draw_panes();
   place_pane_titles();
   place_axes();
   place_scale();
   place_label();
   place_contact_labels();
-  document.documentElement.dataset.drawn = String(renderer.info.render.calls);
+  root.dataset.drawn = String(renderer.info.render.calls);
 }
 
 const kKeys = {
@@ -46,9 +46,6 @@ const kKeys = {
   3: () => look_from("top"), p: fold, d: switch_theme,
   " ": toggle_playing, s: switch_panes, n: () => jump(1), b: () => jump(-1),
 };
-const kShiftKeys = {ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0),
-                    ArrowUp: () => pan(0, 1), ArrowDown: () => pan(0, -1)};
-
 function hear_keys() {
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -57,7 +54,7 @@ function hear_keys() {
     // Space presses what has the focus, and plays elsewhere.
     if (target.type === "number") return;
     if (event.key === " " && target.matches("button, summary, select, [type=checkbox]")) return;
-    const action = event.shiftKey && kShiftKeys[event.key] || kKeys[event.key];
+    const action = kKeys[event.key];
     if (!action) return;
     event.preventDefault();
     action();
@@ -67,7 +64,7 @@ function hear_keys() {
 function start() {
   if (!renderer) throw new Error("this browser cannot draw WebGL 2");
   theme_listeners.push(() => {
-    renderer.setClearColor(colour(theme().ground), 1);
+    renderer.setClearColor(colour("ground"), 1);
     refresh();
   });
   // On a narrow screen the scene comes first; the panel is a press away.
@@ -80,7 +77,8 @@ function start() {
   items.forEach(add_item);
   add_leaks();
   add_cut();
-  add_panes();
+  panel_part("side-row").hidden = !can_stand_side_by_side;
+  tell_panes();
   add_robot();
   add_player();
   hear_keys();

@@ -10,23 +10,19 @@ function pose_to(object, pose) {
 
 // A joint is its origin, fixed in the parent, and in that the moving frame of its child.
 const joint_frames = [];
-if (robot_data) {
-  for (const link of robot_data.links) {
-    const frame = new THREE.Group();
-    frame.name = link.name;
-    if (link.joint < 0) {
-      if (robot_data.pose) pose_to(frame, robot_data.pose);
-      world.add(frame);
-    } else {
-      const joint = robot_data.joints[link.joint];
-      const origin = new THREE.Group();
-      pose_to(origin, joint.origin);
-      link_frames[joint.parent].add(origin);
-      origin.add(frame);
-      joint_frames[link.joint] = {joint, frame, axis: new THREE.Vector3().fromArray(joint.axis)};
-    }
-    link_frames.push(frame);
+for (const link of robot_data ? robot_data.links : []) {
+  const frame = new THREE.Group();
+  if (link.joint < 0) {
+    if (robot_data.pose) pose_to(frame, robot_data.pose);
+    world.add(frame);
+  } else {
+    const joint = robot_data.joints[link.joint];
+    const origin = new THREE.Group();
+    pose_to(origin, joint.origin);
+    link_frames[joint.parent].add(origin.add(frame));
+    joint_frames.push({joint, frame, axis: new THREE.Vector3().fromArray(joint.axis)});
   }
+  link_frames.push(frame);
 }
 
 const frame_of = (link) => link >= 0 ? link_frames[link] : world;
@@ -42,7 +38,7 @@ const configuration = robot_data ? [...robot_data.rest] : [];
 const pose_listeners = [];
 
 function place_links() {
-  for (const {joint, frame, axis} of joint_frames.filter(Boolean)) {
+  for (const {joint, frame, axis} of joint_frames) {
     if (joint.variable < 0) continue;
     const position = joint.multiplier * configuration[joint.variable] + joint.offset;
     if (joint.type === "prismatic") {

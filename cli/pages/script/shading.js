@@ -38,14 +38,17 @@ function set_alpha(materials, alpha) {
   depth.visible = alpha < 1;
 }
 
-// The two drawings of a geometry; `order`: bodies with a lower one are drawn before.
+// A geometry as it is drawn in its turn; bodies with a lower order are drawn before.
+function make_drawing(geometry, material, order) {
+  const drawing = new THREE.Mesh(geometry, material);
+  drawing.frustumCulled = false;
+  drawing.renderOrder = order;
+  return drawing;
+}
+// Both passes of it.
 function make_body(geometry, materials, order) {
   const body = new THREE.Group();
-  for (const [step, material] of [materials.depth, materials.colour].entries()) {
-    const drawing = new THREE.Mesh(geometry, material);
-    drawing.frustumCulled = false;
-    drawing.renderOrder = 2 * order + step;
-    body.add(drawing);
-  }
+  body.add(make_drawing(geometry, materials.depth, 2 * order),
+           make_drawing(geometry, materials.colour, 2 * order + 1));
   return body;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, exact at any zoom: each is a square in which the ray of every pixel is met with the sphere.
+// Spheres, exact at any zoom: each is a square in which the ray of every pixel is met with it.
 
 // The square stands through the centre, perpendicular to the line of sight, and covers the sphere:
 // its half side is r d / sqrt(d^2 - r^2) for a sphere of radius r at distance d.
@@ -69,26 +69,27 @@ const kSphereFragment = `
     gl_FragColor = vec4(result, alpha);
   }`;
 
-const sphere_square = new THREE.BufferAttribute(
-    new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3);
-
-// Of x, y, z, radius a sphere.
-function make_sphere_geometry(spheres) {
+// A square for each row of an array, which the attributes share: their names, how wide they are.
+function make_squares(rows, attributes) {
   const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute("position", sphere_square);
+  geometry.setAttribute("position", new THREE.BufferAttribute(
+      new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.setAttribute("sphere", new THREE.InstancedBufferAttribute(spheres, 4));
-  geometry.maxInstancedCount = geometry.instanceCount = spheres.length / 4;
+  const width = Object.values(attributes).reduce((sum, one) => sum + one, 0);
+  const buffer = new THREE.InstancedInterleavedBuffer(rows, width, 1);
+  let offset = 0;
+  for (const [name, size] of Object.entries(attributes)) {
+    geometry.setAttribute(name, new THREE.InterleavedBufferAttribute(buffer, size, offset));
+    offset += size;
+  }
+  geometry.maxInstancedCount = geometry.instanceCount = rows.length / width;
   return geometry;
 }
 
-// Spheres that move with what they are added to, drawn in their turn.
-function sphere_drawing(numbers, material, order) {
-  const drawing = new THREE.Mesh(make_sphere_geometry(new Float32Array(numbers)), material);
-  drawing.frustumCulled = false;
-  drawing.renderOrder = order;
-  return drawing;
-}
+// Of x, y, z, radius a sphere.
+const make_sphere_geometry = (spheres) => make_squares(spheres, {sphere: 4});
+const sphere_drawing = (numbers, material, order) =>
+    make_drawing(make_sphere_geometry(new Float32Array(numbers)), material, order);
 
 function make_sphere_materials(order, uniforms = {}, options = {}) {
   return make_materials(kSphereVertex, kSphereFragment, order, {

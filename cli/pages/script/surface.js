@@ -3,29 +3,36 @@
 const kSharpCosine = Math.cos(30 * Math.PI / 180);
 
 const kSurfaceVertex = `
+  attribute float leak_depth;
+  varying float depth_here;
   varying vec3 eye_position;
   varying vec3 eye_normal;
   void main() {
     vec4 eye = modelViewMatrix * vec4(position, 1.0);
+    depth_here = leak_depth;
     eye_position = eye.xyz;
     eye_normal = mat3(modelViewMatrix) * normal;
     gl_Position = projectionMatrix * eye;
   }`;
 
-// What is behind the cut shows its inner side, darker.
+// What is behind the cut shows its inner side, darker. Of leaks the depth is the colour.
 const kSurfaceFragment = `
-  uniform vec3 base;
-  uniform float alpha;
+  uniform vec3 base, deep;
+  uniform float alpha, deepest;
+  uniform bool is_leak;
+  varying float depth_here;
   varying vec3 eye_position;
   varying vec3 eye_normal;
   ${kShading}
   void main() {
     if (is_cut_away(eye_position)) discard;
     vec3 face = normalize(cross(dFdx(eye_position), dFdy(eye_position)));
-    vec3 normal = normalize(eye_normal);
+    vec3 normal = is_leak ? face : normalize(eye_normal);
     if (dot(normal, face) < 0.0) normal = -normal;
     bool inner = dot(cut.xyz, cut.xyz) > 0.0 && !gl_FrontFacing;
-    gl_FragColor = vec4(shade(inner ? 0.6 * base : base, normal), alpha);
+    vec3 painted = mix(base, deep, clamp(depth_here / deepest, 0.0, 1.0));
+    vec3 shaded = shade(inner ? 0.6 * base : base, normal);
+    gl_FragColor = vec4(is_leak ? mix(painted, shade(painted, normal), 0.5) : shaded, alpha);
   }`;
 
 function face_normals(positions, corners) {
@@ -91,27 +98,52 @@ function sharp_edges(positions, corners, faces) {
   return new Float32Array(ends);
 }
 
+// Triangles with corners of their own; of a mesh with normals, and with lines along sharp edges.
 function make_surface(part, materials, edge_material, order) {
-  const positions = new Float32Array(decode(part.positions));
-  const corners = new Uint32Array(decode(part.corners));
+  const positions = floats_of(part.positions);
+  const corners = integers_of(part.corners);
   const faces = face_normals(positions, corners);
-  const spread = new Float32Array(3 * corners.length);
+  const triangles = new Float32Array(3 * corners.length);
   corners.forEach((vertex, i) => {
-    for (let axis = 0; axis < 3; ++axis) spread[3 * i + axis] = positions[3 * vertex + axis];
+    triangles.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * i);
   });
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(spread, 3));
+  geometry.setAttribute("position", new THREE.BufferAttribute(triangles, 3));
   geometry.setAttribute("normal", new THREE.BufferAttribute(
       corner_normals(corners, faces, positions.length / 3), 3));
   const body = make_body(geometry, materials, order);
-  const edges = make_lines(sharp_edges(positions, corners, faces), edge_material, 2 * order + 1);
-  body.add(edges);
-  return {body, edges, triangles: spread, count: corners.length / 3, box: box_of(positions, 3)};
+  body.add(make_lines(sharp_edges(positions, corners, faces), edge_material, 2 * order + 1));
+  return {body, triangles, count: corners.length / 3, box: box_of(positions, 3)};
 }
 
-function make_surface_materials(order) {
+function make_surface_materials(order, uniforms = {}, options = {}) {
   return make_materials(kSurfaceVertex, kSurfaceFragment, order, {
-    base: {value: new THREE.Color()},
-    alpha: {value: 1},
-  }, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    base: {value: new THREE.Color()}, deep: {value: new THREE.Color()}, deepest: {value: 1},
+    is_leak: {value: false}, alpha: {value: 1}, ...uniforms,
+  }, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...options});
+}
+
+// The part of a mesh that is outside of all spheres, coloured by its depth as if painted on the
+// mesh: what stands before it hides it, and it is cut with the rest. One scale for all leaks of the
+// page, so that sets can be compared.
+const deepest_leak = {value: 1e-30};
+let has_leak_surface = false;
+const leak_material = make_surface_materials(
+    0, {is_leak: {value: true}, deepest: deepest_leak}, {polygonOffset: false}).colour;
+theme_listeners.push(() => {
+  leak_material.uniforms.base.value.copy(colour("leak-shallow"));
+  leak_material.uniforms.deep.value.copy(colour("leak-deep"));
+});
+
+// Null where only points are known.
+function make_leak_surface(part, order) {
+  if (!part.depths) return null;
+  has_leak_surface = true;
+  const depths = floats_of(part.depths);
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(floats_of(part.positions), 3));
+  geometry.setAttribute("leak_depth", new THREE.BufferAttribute(depths, 1));
+  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(bytes_of(part.corners)), 1));
+  deepest_leak.value = depths.reduce((most, depth) => Math.max(most, depth), deepest_leak.value);
+  return make_drawing(geometry, leak_material, order);
 }
