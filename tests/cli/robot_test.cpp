@@ -5,7 +5,7 @@
 #include "spheretree/tree_file.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/cli/robot_fixtures.h"
-#include "tests/robot/cover/cover_oracle.h"
+#include "tests/robot/solid_oracle.h"
 #include "tests/support/child_process.h"
 #include "tests/support/effort.h"
 

@@ -49,17 +49,22 @@ AlignedBox3d random_box(Random& random) {
 
 void BoxRobot::add_boxes(int link, std::vector<AlignedBox3d> of_link) {
   TriangleMesh mesh;
-  for (const AlignedBox3d& box : of_link) {
-    const TriangleMesh part = box_mesh(box.min(), box.max());
-    const auto shift = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const Eigen::Vector3i& triangle : part.triangles) {
-      mesh.triangles.emplace_back(triangle + Eigen::Vector3i::Constant(shift));
-    }
-  }
+  for (const AlignedBox3d& box : of_link) mesh = joined(mesh, box_mesh(box.min(), box.max()));
   boxes.resize(model.links().size());
   boxes[static_cast<std::size_t>(link)] = std::move(of_link);
   bodies.push_back({.link = link, .mesh = std::make_shared<const SolidMesh>(mesh)});
+}
+
+AlignedBox3d cube_at(const Vector3d& center) {
+  return {center.array() - 0.1, center.array() + 0.1};
+}
+
+BoxRobot post_and_bar(const Joint& turn, double height) {
+  BoxRobot robot{RobotModel("post")};
+  robot.model.add_link("bar", "post", turn);
+  robot.add_boxes(0, {cube_at({1.0, 0.0, 0.0})});
+  robot.add_boxes(1, {{Vector3d(0.0, -0.02, -height), Vector3d(2.0, 0.02, height)}});
+  return robot;
 }
 
 BoxRobot random_box_robot(Random& random, int joints, bool branching, bool mimics) {
@@ -91,12 +96,7 @@ BoxRobot random_box_robot(Random& random, int joints, bool branching, bool mimic
 BoxRobot two_turning_bars(double height) {
   BoxRobot robot{RobotModel("base")};
   for (const char* const name : {"first", "second"}) {
-    robot.model.add_link(name, "base",
-                         {.name = std::string(name) + "_turns",
-                          .type = JointType::kRevolute,
-                          .axis = Vector3d::UnitZ(),
-                          .lower = -1.0,
-                          .upper = 1.0});
+    robot.model.add_link(name, "base", turning(-1.0, 1.0, std::string(name) + "_turns"));
   }
   for (const int link : {1, 2}) {
     const double low = height + 0.03 * (link - 1);

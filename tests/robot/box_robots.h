@@ -21,8 +21,15 @@ struct BoxRobot {
   void add_boxes(int link, std::vector<Eigen::AlignedBox3d> of_link);
 };
 
+// With edges of 0.2 about a centre.
+Eigen::AlignedBox3d cube_at(const Eigen::Vector3d& center);
+
 // Joints of all types with limits, mimics where `mimics`, rods and blocks as links.
 BoxRobot random_box_robot(Random& random, int joints, bool branching, bool mimics);
+
+// A post of half-width 0.1 at x = 1, which is the base, and a bar from the origin up to x = 2, 0.02
+// to each side and up to `height` up and down, that turns about z.
+BoxRobot post_and_bar(const Joint& turn, double height = 0.05);
 
 // Two bars, links 1 and 2, along x, one above the other, that turn about the z axis of the base;
 // the lower one begins at this height. They touch in no configuration.

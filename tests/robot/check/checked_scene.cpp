@@ -8,34 +8,26 @@
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace spherule::test {
 
-namespace {
-
-RobotChecker checker_of(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-                        const ObstacleOptions& options) {
-  RobotScene scene(robot, options.world_from_root);
+RobotScene scene_without_self_tests(const RobotModel& robot, const Pose& world_from_root) {
+  RobotScene scene(robot, world_from_root);
   AllowedCollisions allowed(robot);
   allowed.allow_all();
   scene.set_allowed_collisions(std::move(allowed));
+  return scene;
+}
+
+RobotChecker obstacle_checker(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                              const ObstacleOptions& options) {
+  RobotScene scene = scene_without_self_tests(robot, options.world_from_root);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     scene.add(obstacle_name(i), obstacles[i].tree, obstacles[i].world_from_tree);
   }
-  for (const auto& [link, obstacle] : options.untested) {
-    scene.allow_contact(robot.links()[static_cast<std::size_t>(link)].name,
-                        obstacle_name(obstacle));
-  }
   return scene.snapshot({.instructions = options.instructions, .meshes = options.meshes});
 }
-
-}  // namespace
-
-ObstacleChecker::ObstacleChecker(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-                                 const ObstacleOptions& options)
-    : RobotChecker(checker_of(robot, obstacles, options)) {}
 
 std::string obstacle_name(std::size_t index) {
   return "obstacle " + std::to_string(index);
@@ -57,6 +49,7 @@ RobotModel random_robot_with_trees(Random& random, double size) {
   // One after the other, as the order in which arguments are evaluated is the compiler's.
   const bool branching = random.whole(0, 1) == 1;
   RobotModel robot = random_robot(random, random.whole(1, 8), branching);
+  if (random.whole(0, 3) == 0) add_random_mimics(random, robot, 3.0);
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
     for (int i = random.whole(0, 2); i > 0; --i) {
       robot.attach(robot.links()[link].name, random_tree(random, size));
@@ -87,21 +80,13 @@ std::optional<Sphere> random_sphere_of(Random& random, const RobotModel& robot,
 }
 
 bool answer(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-            std::span<const double> configuration, const ObstacleOptions& options) {
+            std::span<const double> configuration, const Pose& world_from_root) {
   std::vector<Pose> world_from_link;
-  forward_kinematics(robot, configuration, world_from_link, options.world_from_root);
+  forward_kinematics(robot, configuration, world_from_link, world_from_root);
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
-    for (std::size_t i = 0; i < obstacles.size(); ++i) {
-      const bool is_untested =
-          std::any_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
-            return pair.link == static_cast<int>(link) && pair.obstacle == i;
-          });
-      if (is_untested) continue;
-      for (const auto& tree : robot.links()[link].trees) {
-        if (collides(*tree, world_from_link[link], *obstacles[i].tree,
-                     obstacles[i].world_from_tree)) {
-          return true;
-        }
+    for (const auto& tree : robot.links()[link].trees) {
+      for (const PlacedTree& other : obstacles) {
+        if (collides(*tree, world_from_link[link], *other.tree, other.world_from_tree)) return true;
       }
     }
   }

@@ -5,6 +5,7 @@
 #include "robot/check/body_pairs.h"
 #include "robot/check/plan_source.h"
 #include "robot/model/joint_positions.h"
+#include "tests/robot/check/checked.h"
 #include "tests/robot/path_bounds.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
@@ -145,22 +146,6 @@ TEST(FreeCells, HoldNoPositionsAtWhichSpheresAreNear) {
   }
   EXPECT_GT(checked, effort(20000, 4000));
   EXPECT_GT(far_and_free, far / 10 * 9);
-}
-
-TEST(FreeCells, AreNoneWhereNothingIsFreeOrNothingOrTooMuchMoves) {
-  Random random(seeded(5));
-  FreeCellsSource source = random_source(random);
-  source.first.chain = {random_joint(random, 0)};
-  source.second.chain = {random_joint(random, 1), random_joint(random, 2)};
-  EXPECT_EQ(FreeCells::of(source), nullptr);
-  source.first.chain.clear();
-  source.second.chain.clear();
-  EXPECT_EQ(FreeCells::of(source), nullptr);
-  source.second.chain = {{Pose(), false, 0, -1e300, 1e300}};
-  EXPECT_EQ(FreeCells::of(source), nullptr);
-  source.second.chain = {{Pose(), true, 0, -1.0, 1.0}};
-  source.first.trees = trees_of({{Eigen::Vector3d::Zero(), 100.0}});
-  EXPECT_EQ(FreeCells::of(source), nullptr);
 }
 
 TEST(FreeCells, AreKeptForTheSameTreesAndJoints) {
@@ -308,8 +293,7 @@ TEST(PlanBounds, AreThoseOfTheFormula) {
     const std::size_t count = tested.size();
     const internal::BodyPairs pairs(robot, Pose(), pieces, {}, tested, count);
     const std::vector<double> from = random_configuration(random, robot, 2.0);
-    std::vector<double> to = random_configuration(random, robot, 2.0);
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+    const Configuration to = moved(random_configuration(random, robot, 2.0), from);
     for (const InstructionSet set : instruction_sets()) {
       compared += check_bounds<float>(pairs, set, from, to);
       compared += check_bounds<double>(pairs, set, from, to);

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Many configurations a call, one behind the other or shared out among threads: the verdicts and
+// the errors of one at a time, whatever is remembered. That the answers are right, whatever the
+// order: tests/soak/configurations_test.cpp.
+
 #include "base/error.h"
-#include "robot/model/shared_work.h"
+#include "robot/model/kinematics.h"
 #include "spheretree/build.h"
+#include "tests/robot/check/checked.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
@@ -11,55 +16,31 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <set>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
-
-// Many configurations a call, where there is too much to remember. That the answers are those of
-// exact queries, whatever the order: tests/soak/configurations_test.cpp.
 
 namespace spherule::test {
 namespace {
 
-// Configurations one behind the other.
-struct Path {
-  std::vector<double> positions{};
-  std::size_t variables = 0;
-
-  std::size_t size() const { return variables == 0 ? 0 : positions.size() / variables; }
-  std::span<const double> operator[](std::size_t i) const {
-    return std::span(positions).subspan(i * variables, variables);
-  }
-  void add(const std::vector<double>& configuration) {
-    positions.insert(positions.end(), configuration.begin(), configuration.end());
-  }
-};
-
-std::vector<std::uint8_t> verdicts(const ObstacleChecker& checker, const Path& path,
-                                   RobotChecker::Scratch& scratch) {
-  std::vector<std::uint8_t> result(path.size());
-  checker.collides(path.positions, scratch, result);
-  return result;
+std::shared_ptr<const SphereTree> tree_of(const std::vector<Sphere>& spheres) {
+  return std::make_shared<const SphereTree>(build_tree(spheres));
 }
 
-// The same by the exact queries.
-std::vector<std::uint8_t> answers(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
-                                  const Path& path, const ObstacleOptions& options) {
-  std::vector<std::uint8_t> result;
-  for (std::size_t k = 0; k < path.size(); ++k) {
-    result.push_back(answer(robot, obstacles, path[k], options) ? 1 : 0);
+// Of one variable, on every instruction set.
+void expect_free(const RobotModel& robot, const std::vector<PlacedTree>& obstacles,
+                 const std::vector<double>& path, const std::vector<std::uint8_t>& expected) {
+  for (const InstructionSet set : instruction_sets()) {
+    Checked checked(obstacle_checker(robot, obstacles, {.instructions = set}));
+    EXPECT_EQ(checked.free(path, path.size()), expected);
   }
-  return result;
 }
 
 // Many small spheres in the way of a search make it run out of room; a block with numbers far out
@@ -67,20 +48,17 @@ std::vector<std::uint8_t> answers(const RobotModel& robot, const std::vector<Pla
 TEST(RobotBatch, AnswersWhereThereIsTooMuchToRemember) {
   Random random(43);
   RobotModel robot("base");
-  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", std::make_shared<const SphereTree>(
-                          build_tree(random_spheres(random, 3000, 0.5, 0.01))));
+  robot.add_link("arm", "base", wheel());
+  robot.attach("arm", tree_of(random_spheres(random, 3000, 0.5, 0.01)));
   const std::vector<PlacedTree> obstacles = {
-      {std::make_shared<const SphereTree>(build_tree(random_spheres(random, 3000, 0.5, 1e-4))),
-       Pose::from_translation({0.9, 0.0, 0.0})}};
-  Path path{.variables = 1};
-  for (int i = 0; i < 100; ++i) path.add({0.001 * i + (i % 23 == 7 ? 628.3 : 0.0)});
-  const std::vector<std::uint8_t> expected = answers(robot, obstacles, path, {});
-  for (const InstructionSet set : instruction_sets()) {
-    const ObstacleChecker checker(robot, obstacles, {.instructions = set});
-    RobotChecker::Scratch scratch(checker);
-    EXPECT_EQ(verdicts(checker, path, scratch), expected);
+      {tree_of(random_spheres(random, 3000, 0.5, 1e-4)), Pose::from_translation({0.9, 0.0, 0.0})}};
+  std::vector<double> path;
+  std::vector<std::uint8_t> expected;
+  for (int i = 0; i < 100; ++i) {
+    path.push_back(0.001 * i + (i % 23 == 7 ? 628.3 : 0.0));
+    expected.push_back(answer(robot, obstacles, std::span(path).last(1)) ? 0 : 1);
   }
+  expect_free(robot, obstacles, path, expected);
 }
 
 // A sphere inside a shell of small spheres overlaps every inner sphere of the shell's tree, but
@@ -96,57 +74,25 @@ TEST(RobotBatch, NothingThatWaitsIsForgotten) {
     shell.push_back({{r * std::cos(turn), r * std::sin(turn), z}, 1e-3});
   }
   RobotModel robot("base");
-  robot.add_link("slide", "base", {.name = "slide", .type = JointType::kPrismatic});
-  robot.attach("slide", std::make_shared<const SphereTree>(
-                            build_tree(std::vector<Sphere>{{{0, 0, 0}, 0.95}, {{2, 0, 0}, 0.01}})));
+  robot.add_link("slide", "base", sliding(0, 0, "", Eigen::Vector3d::UnitZ()));
+  robot.attach("slide", tree_of({{{0, 0, 0}, 0.95}, {{2, 0, 0}, 0.01}}));
   shell.push_back({{0, 5, 0}, 3.9});  // only the sphere around all of the body overlaps it
-  Path path{.variables = 1};
-  for (int i = 0; i < 32; ++i) path.add({1e-4 * i});
+  std::vector<double> path;
+  for (int i = 0; i < 32; ++i) path.push_back(1e-4 * i);
   for (int at = 0; at < kCount; at += effort(97, 997)) {
     std::vector<Sphere> spheres = shell;
     if (at > 0) spheres[static_cast<std::size_t>(at)].radius = 0.06;
-    const std::vector<PlacedTree> obstacles = {
-        {std::make_shared<const SphereTree>(build_tree(spheres)), Pose()}};
-    for (const InstructionSet set : instruction_sets()) {
-      const ObstacleChecker checker(robot, obstacles, {.instructions = set});
-      RobotChecker::Scratch scratch(checker);
-      const std::vector<std::uint8_t> expected(path.size(), at > 0 ? 1 : 0);
-      EXPECT_EQ(verdicts(checker, path, scratch), expected) << at;
-    }
+    SCOPED_TRACE(at);
+    expect_free(robot, {{tree_of(spheres)}}, path,
+                std::vector<std::uint8_t>(path.size(), at > 0 ? 0 : 1));
   }
 }
-
-TEST(RobotBatch, RefusesBadInput) {
-  RobotModel robot("base");
-  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
-  const ObstacleChecker checker(robot, {{one_sphere_tree({0, 1, 0}, 0.1), Pose()}});
-  RobotChecker::Scratch scratch(checker);
-  std::vector<std::uint8_t> two(2);
-  EXPECT_THROW(checker.collides(std::vector<double>{0.0}, scratch, two), Error);
-  EXPECT_THROW(checker.collides(std::vector<double>{0.0, 0.0, 0.0}, scratch, two), Error);
-  for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(checker.collides(std::vector<double>{0.0, bad}, scratch, two), Error) << bad;
-  }
-  checker.collides({}, scratch, {});
-  checker.collides(std::vector<double>{0.0, 1.5707963}, scratch, two);
-  EXPECT_EQ(two, (std::vector<std::uint8_t>{0, 1}));
-}
-
-}  // namespace
-}  // namespace spherule::test
-
-// Configurations shared out among threads: the verdicts and the errors of one thread.
-
-namespace spherule::test::robot_threads_test {
-namespace {
 
 // What robot_checker.cpp shares out.
 constexpr std::size_t kPiece = 512;
 constexpr std::size_t kFewestShared = 4096;
 
-std::vector<RobotChecker::Scratch> scratches(const ObstacleChecker& checker, std::size_t count) {
+std::vector<RobotChecker::Scratch> scratches(const RobotChecker& checker, std::size_t count) {
   std::vector<RobotChecker::Scratch> result;
   for (std::size_t i = 0; i < count; ++i) result.emplace_back(checker);
   return result;
@@ -172,8 +118,11 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const auto variables = static_cast<std::size_t>(robot.variable_count());
     if (variables == 0) continue;
-    const ObstacleChecker checker(robot, random_obstacles(random),
-                                  {.world_from_root = random_root(random, 1.0)});
+    RobotScene scene(robot, random_root(random, 1.0));
+    for (const PlacedTree& tree : random_obstacles(random)) {
+      scene.add(std::to_string(scene.obstacles().size()), tree.tree, tree.world_from_tree);
+    }
+    const RobotChecker checker = scene.snapshot({.enforce_limits = i % 2 == 0});
     // About the ends of pieces and of blocks, and anywhere; some are shared out, some are not.
     constexpr std::size_t kLongest = kFewestShared + 3 * kPiece;
     const std::size_t sizes[] = {0,
@@ -183,22 +132,25 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
                                  kFewestShared,
                                  kFewestShared + kPiece - 3,
                                  kFewestShared + kPiece + 1,
-                                 static_cast<std::size_t>(random.whole(
-                                     static_cast<int>(kFewestShared), static_cast<int>(kLongest)))};
-    const std::vector<double> path = random_path(random, robot, kLongest);
-    std::vector<RobotChecker::Scratch> seven =
-        scratches(checker, 7);  // what they remember is no matter
+                                 kFewestShared + random.index(kLongest - kFewestShared)};
+    std::vector<double> path = random_path(random, robot, kLongest);
+    for (std::size_t k = 0; k < path.size(); k += 50 * variables) path[k] *= 40.0;
+    std::vector<std::uint8_t> expected;
+    Checked one(checker);
+    for (std::size_t k = 0; k < kLongest; ++k) {
+      expected.push_back(one.free(std::span(path).subspan(k * variables, variables)) ? 1 : 0);
+      (expected.back() == 0 ? hits : free) += 1;
+    }
+    std::vector<RobotChecker::Scratch> seven = scratches(checker, 7);
     for (const std::size_t size : sizes) {
-      ASSERT_LE(size * variables, path.size());
       const auto configurations = std::span(path).first(size * variables);
-      RobotChecker::Scratch scratch(checker);
-      std::vector<std::uint8_t> expected(size);
-      checker.collides(configurations, scratch, expected);
-      for (const std::uint8_t verdict : expected) (verdict == 1 ? hits : free) += 1;
+      const std::vector<std::uint8_t> truth(expected.begin(),
+                                            expected.begin() + static_cast<std::ptrdiff_t>(size));
+      ASSERT_EQ(one.free(configurations, size), truth) << i << ' ' << size;
       for (const std::size_t threads : {1U, 2U, 3U, 7U}) {
         std::vector<std::uint8_t> verdicts(size, 2);
-        checker.collides(configurations, std::span(seven).first(threads), verdicts);
-        ASSERT_EQ(verdicts, expected) << i << ' ' << size << ' ' << threads;
+        checker.check_configs(configurations, std::span(seven).first(threads), verdicts);
+        ASSERT_EQ(verdicts, truth) << i << ' ' << size << ' ' << threads;
       }
     }
   }
@@ -206,18 +158,10 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
   EXPECT_GT(free, static_cast<std::size_t>(effort(10000, 1000)));
 }
 
-// One that slides along x and touches from 0.9 to 1.1.
-ObstacleChecker slide() {
-  RobotModel robot("base");
-  robot.add_link("slide", "base",
-                 {.name = "slide", .type = JointType::kPrismatic, .axis = {1, 0, 0}});
-  robot.attach("slide", one_sphere_tree({0, 0, 0}, 0.05));
-  return ObstacleChecker(robot, {{one_sphere_tree({1, 0, 0}, 0.05), Pose()}});
-}
-
 // What is thrown is what one thread would meet first, whichever thread comes to which first.
 TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
-  const ObstacleChecker checker = slide();
+  const RobotChecker checker = obstacle_checker(one_arm(sliding(0, 0), {0, 0, 0}, 0.05),
+                                                {{one_sphere_tree({1, 0, 0}, 0.05)}});
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   constexpr double kTooFar = 1e17;
   const auto error_of = [&](const std::vector<double>& path, std::size_t threads) -> std::string {
@@ -225,10 +169,9 @@ TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
     std::vector<std::uint8_t> verdicts(path.size());
     try {
       if (threads == 0) {
-        RobotChecker::Scratch scratch(checker);
-        checker.collides(path, scratch, verdicts);
+        Checked(checker).free(path, path.size());
       } else {
-        checker.collides(path, some, verdicts);
+        checker.check_configs(path, some, verdicts);
       }
     } catch (const Error& error) {
       return error.what();
@@ -254,91 +197,90 @@ TEST(RobotThreads, ErrorsAreThoseOfOneThread) {
   EXPECT_EQ(errors.size(), 2U);
 }
 
-TEST(RobotThreads, RefusesWhatDoesNotFit) {
-  const ObstacleChecker checker = slide();
-  std::vector<RobotChecker::Scratch> two = scratches(checker, 2);
-  std::vector<std::uint8_t> verdicts(2);
-  EXPECT_THROW(checker.collides(std::vector<double>{0.0}, two, verdicts), Error);
-  EXPECT_THROW(
-      checker.collides(std::vector<double>{0.0, 1.0}, std::span<RobotChecker::Scratch>(), verdicts),
-      Error);
-  checker.collides(std::vector<double>{0.0, 1.0}, two, verdicts);
-  EXPECT_EQ(verdicts, (std::vector<std::uint8_t>{0, 1}));
-  checker.collides({}, two, {});
+using Meshes = std::vector<std::shared_ptr<const CoveredMesh>>;
+
+// Of all, of the robot alone, of the two obstacles alone, which are the last, of none.
+Meshes some_of(const Meshes& meshes, int which) {
+  Meshes some;
+  if (which < 2) some.assign(meshes.begin(), meshes.end() - 2);
+  if (which % 2 == 0) some.insert(some.end(), meshes.end() - 2, meshes.end());
+  return some;
 }
 
-TEST(RobotThreads, RefusesTheScratchOfAnother) {
-  const ObstacleChecker checker = slide();
-  std::vector<RobotChecker::Scratch> own = scratches(checker, 1);
-  std::vector<RobotChecker::Scratch> other = scratches(slide(), 2);
-  const std::vector<double> q = {0.0};
-  std::vector<std::uint8_t> verdicts(1);
-  EXPECT_NO_THROW((void)checker.explain(q, own[0]));
-  EXPECT_THROW((void)checker.collides(q, other[0]), Error);
-  EXPECT_THROW((void)checker.within(q, 0.1, other[0]), Error);
-  EXPECT_THROW((void)checker.explain(q, other[0]), Error);
-  EXPECT_THROW((void)checker.check_edge(q, q, other[0]), Error);
-  EXPECT_THROW(checker.collides(q, other[0], verdicts), Error);
-  EXPECT_THROW(checker.collides(q, other, verdicts), Error);
-  // Also where so few are not shared out, so that only the first scratch is used.
-  own.push_back(std::move(other[1]));
-  EXPECT_THROW(checker.collides(q, own, verdicts), Error);
-}
-
-TEST(SharedWork, DoesEachPieceOnceAndLetsNoTwoShareAWorker) {
-  for (const std::size_t pieces : {0U, 1U, 2U, 5U, 1000U}) {
-    for (const std::size_t workers : {1U, 2U, 3U, 7U}) {
-      std::vector<std::atomic<int>> done(pieces);
-      std::vector<std::atomic<int>> busy(workers);
-      std::atomic<bool> shared = false;
-      internal::share_work(pieces, workers, [&](std::size_t worker, std::size_t piece) {
-        if (busy[worker].fetch_add(1) != 0) shared = true;
-        done[piece].fetch_add(1);
-        busy[worker].fetch_sub(1);
-      });
-      for (const auto& times : done) EXPECT_EQ(times.load(), 1);
-      EXPECT_FALSE(shared.load());
-    }
+// Sometimes another query: of a block, a motion, or a clearance.
+void query_in_between(Random& random, Checked& checked, const Configuration& at,
+                      const Configuration& elsewhere) {
+  switch (random.whole(0, 40)) {
+    case 0:
+      checked.free(elsewhere, 1);
+      break;
+    case 1:
+      checked.edge(elsewhere, at, {.resolution = 0.05});
+      break;
+    case 2:
+      checked.checker.within(at, random.between(0.0, 0.1), checked.scratch);
+      break;
+    default:
+      break;
   }
 }
 
-TEST(SharedWork, OnePieceStaysOnTheCallersThread) {
-  const std::thread::id caller = std::this_thread::get_id();
-  internal::share_work(1, 7, [&](std::size_t worker, std::size_t) {
-    EXPECT_EQ(worker, 0U);
-    EXPECT_EQ(std::this_thread::get_id(), caller);
-  });
-}
-
-// Two pieces throw, now the one first, now the other.
-TEST(SharedWork, ThrowsWhatTheFirstPieceThrows) {
-  for (int i = 0; i < 100; ++i) {
-    std::atomic<int> begun = 0;
-    std::atomic<int> thrown = 0;
-    std::atomic<int> running = 0;
-    const std::size_t last_to_throw = i % 2 == 0 ? 10 : 11;
-    try {
-      internal::share_work(100, 2, [&](std::size_t, std::size_t piece) {
-        ++running;
-        if (piece >= 10) ++begun;
-        while (piece >= 10 && begun < 2) std::this_thread::yield();
-        if (piece == last_to_throw) {
-          while (thrown == 0) std::this_thread::yield();
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        --running;
-        if (piece < 10) return;
-        ++thrown;
-        throw std::runtime_error(std::to_string(piece));
-      });
-      ADD_FAILURE() << "nothing was thrown";
-    } catch (const std::runtime_error& error) {
-      EXPECT_STREQ(error.what(), "10");
+// Along paths, with steps of any size, stops and jumps, what is remembered changes no answer:
+// neither of those before, nor of a block or a motion that was requested in between.
+TEST(RobotMemory, AnswersAlongAPathAsWithoutIt) {
+  Random random(seeded(63));
+  int hits = 0;
+  int free = 0;
+  int changes = 0;
+  for (int i = 0; i < scaled(60, 10); ++i) {
+    RobotModel robot = random_robot(random, random.whole(1, 6), i % 2 == 1);
+    ObstacleOptions options{.world_from_root = random_root(random, 1.0)};
+    std::vector<std::shared_ptr<const CoveredMesh>> meshes;
+    // What stands with the root would touch always or never.
+    for (const Joint& joint : std::vector<Joint>(robot.joints())) {
+      const Link& link = robot.links()[static_cast<std::size_t>(joint.child_link)];
+      meshes.push_back(covered_tetrahedron(random, random.between(0.05, 0.4)));
+      robot.attach(std::string(link.name), cover_of(meshes.back()));
     }
-    EXPECT_EQ(running.load(), 0);
-    EXPECT_EQ(thrown.load(), 2);
+    std::vector<PlacedTree> obstacles;
+    // Obstacles stand where links come to, and the paths begin there.
+    const std::vector<double> home = random_configuration(random, robot, 3.2);
+    std::vector<Pose> links;
+    forward_kinematics(robot, home, links, options.world_from_root);
+    for (int k = 0; k < 2; ++k) {
+      meshes.push_back(covered_tetrahedron(random, random.between(0.05, 0.4)));
+      const auto link =
+          static_cast<std::size_t>(random.whole(1, static_cast<int>(robot.links().size()) - 1));
+      obstacles.push_back(
+          {cover_of(meshes.back()),
+           Pose(random.quaternion(), links[link].translation() + random.point(0.5))});
+    }
+    const auto near_home = [&] { return moved(random_configuration(random, robot, 0.3), home); };
+    options.meshes = some_of(meshes, i % 4);
+    Checked remembers(obstacle_checker(robot, obstacles, options));
+    std::vector<double> at = near_home();
+    std::vector<double> heading = random_configuration(random, robot, 1.0);
+    double step = 1e-2;
+    bool before = false;
+    for (int k = 0; k < 1500; ++k) {
+      if (random.whole(0, 60) == 0) heading = random_configuration(random, robot, 1.0);
+      if (random.whole(0, 90) == 0) step = std::pow(10.0, random.between(-6.0, -1.3));
+      if (random.whole(0, 150) == 0) at = near_home();
+      if (random.whole(0, 20) != 0) {
+        for (std::size_t v = 0; v < at.size(); ++v) at[v] += step * heading[v];
+      }
+      const bool expected = Checked(remembers.checker).free(at);
+      ASSERT_EQ(remembers.free(at), expected) << i << ' ' << k;
+      query_in_between(random, remembers, at, near_home());
+      (expected ? free : hits) += 1;
+      changes += k > 0 && before != expected;
+      before = expected;
+    }
   }
+  EXPECT_GT(hits, effort(3000, 300));
+  EXPECT_GT(free, effort(3000, 300));
+  EXPECT_GT(changes, effort(100, 10));
 }
 
 }  // namespace
-}  // namespace spherule::test::robot_threads_test
+}  // namespace spherule::test

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which queries of a robot's checker allocate.
 
-#include "robot/check/robot_scene.h"
 #include "spheretree/build.h"
+#include "tests/robot/check/checked.h"
 #include "tests/robot/robots.h"
 #include "tests/support/counting_new.h"
 #include "tests/support/random.h"
@@ -16,6 +16,7 @@ namespace {
 TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
   Random random(91);
   RobotModel robot = random_robot(random, 6, false);
+  add_random_mimics(random, robot, 0.25);
   const auto spheres = [&](int count, double size) {
     return std::make_shared<const SphereTree>(
         build_tree(random_spheres(random, count, size, 0.1 * size)));
@@ -30,8 +31,7 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
   scene.add("box", Primitive(Box{{0.1, 0.1, 0.1}}), Pose::from_translation({0, 2, 0}));
   scene.set_padding("link_3", 0.01);
   scene.attach("tool", "link_6", spheres(30, 0.1));
-  const RobotChecker checker = scene.snapshot({.enforce_limits = true, .meshes = {mesh}});
-  RobotChecker::Scratch scratch(checker);
+  Checked checked(scene, {.enforce_limits = true, .meshes = {mesh}});
   std::vector<std::vector<double>> points;
   for (int i = 0; i < 60; ++i) points.push_back(random_configuration(random, robot, 1.0));
   std::vector<double> all;
@@ -41,12 +41,13 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
   int proved = 0;
   const auto query = [&] {
     for (std::size_t i = 1; i < points.size(); ++i) {
-      collisions += checker.check_config(points[i], scratch) ? 0 : 1;
-      const EdgeResult edge = checker.check_edge(points[i - 1], points[i], scratch,
-                                                 {.resolution = 1e-2, .first = i % 2 == 0});
+      collisions += checked.free(points[i]) ? 0 : 1;
+      const EdgeResult edge =
+          checked.edge(points[i - 1], points[i], {.resolution = 1e-2, .first = i % 2 == 0});
+      checked.checker.within(points[i], 0.1, checked.scratch);
       proved += edge.free_until > 0.0 ? 1 : 0;
     }
-    checker.check_configs(all, scratch, free);
+    checked.checker.check_configs(all, checked.scratch, free);
   };
   query();
   const int before = allocations;
@@ -58,19 +59,15 @@ TEST(RobotCheckerAllocation, WarmQueriesAllocateNothing) {
 }
 
 TEST(RobotCheckerAllocation, NorDoTurnsByTheShorterWay) {
-  RobotModel robot("base");
-  robot.add_link("arm", "base", {.name = "swing", .type = JointType::kContinuous});
-  robot.attach("arm", one_sphere_tree({1.0, 0.0, 0.0}, 0.01));
-  RobotScene scene(robot);
+  RobotScene scene(one_arm(wheel("swing"), {1.0, 0.0, 0.0}, 0.01));
   scene.add("post", one_sphere_tree({1.0, 0.0, 0.0}, 0.01));
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
-  const std::vector<double> from = {3.0};
-  const std::vector<double> to = {-3.0};
+  Checked checked(scene);
+  const Configuration from = {3.0};
+  const Configuration to = {-3.0};
   const EdgeRequest request{.continuous = ContinuousMotion::kShortest};
-  EXPECT_EQ(checker.check_edge(from, to, scratch, request).verdict, Verdict::kFree);
+  EXPECT_EQ(checked.edge(from, to, request).verdict, Verdict::kFree);
   const int before = allocations;
-  EXPECT_EQ(checker.check_edge(from, to, scratch, request).verdict, Verdict::kFree);
+  EXPECT_EQ(checked.edge(from, to, request).verdict, Verdict::kFree);
   EXPECT_EQ(allocations, before);
 }
 

@@ -3,9 +3,9 @@
 
 #include "robot/check/robot_checker.h"
 
-#include "base/error.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "tests/robot/check/checked.h"
+#include "tests/robot/check/checked_scene.h"
 #include "tests/robot/check/scene_oracle.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -32,13 +33,12 @@ TEST(RobotChecker, AnswersAsAllPairsOfSpheresDo) {
   int self_hits = 0;
   for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
-    const RobotChecker checker = scene.snapshot();
-    RobotChecker::Scratch scratch(checker);
+    Checked checked(scene);
     for (int i = 0; i < 4; ++i) {
       const std::vector<double> q = random_configuration(random, oracle.robot, 3.0);
       std::size_t nearest = 0;
       const auto gap = oracle.gap(q, &nearest);
-      const bool is_free = checker.check_config(q, scratch);
+      const bool is_free = checked.free(q);
       if (gap && *gap <= 0.0L) {
         EXPECT_FALSE(is_free) << "missed, by " << static_cast<double>(*gap);
       }
@@ -80,13 +80,12 @@ TEST(RobotChecker, PaddingIsGrownSpheresToTheLastDigits) {
       scene.set_padding(body.name, oracle.bodies[pair.second].name,
                         static_cast<double>(pair.padding) + more);
     }
-    const RobotChecker checker = scene.snapshot();
-    RobotChecker::Scratch scratch(checker);
+    Checked checked(scene);
     if (touches) {
-      EXPECT_FALSE(checker.check_config(q, scratch));
+      EXPECT_FALSE(checked.free(q));
       ++touching;
     } else if (n % 3 != 0) {
-      EXPECT_TRUE(checker.check_config(q, scratch)) << more;
+      EXPECT_TRUE(checked.free(q)) << more;
       ++apart;
     }
   }
@@ -99,11 +98,22 @@ TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
   int above_zero = 0;
   for (int n = 0; n < scaled(150, 30); ++n) {
     const auto [scene, oracle] = random_scene(random);
-    const RobotChecker checker = scene.snapshot();
-    RobotChecker::Scratch scratch(checker);
+    Checked checked(scene);
     const std::vector<double> q = random_configuration(random, oracle.robot, 3.0);
     const auto gap = oracle.gap(q);
-    const RobotClearance clearance = checker.clearance(q, scratch);
+    const RobotClearance clearance = checked.clearance(q);
+    // Anywhere, or as near the gap as single precision cannot tell, or can just.
+    for (int k = 0; k < 6; ++k) {
+      const double off = random.sign() * std::pow(10.0, random.between(-16.0, -4.0));
+      const double least = gap ? static_cast<double>(*gap) : 0.0;
+      const double within = std::max(0.0, k == 0 ? random.between(0.0, 1.0) : least + off);
+      for (const InstructionSet set : instruction_sets()) {
+        Checked other(scene, {.instructions = set});
+        const bool is_within = other.checker.within(q, within, other.scratch);
+        ASSERT_TRUE(is_within || !gap || *gap > within) << "missed, by " << within - least;
+        ASSERT_TRUE(!is_within || (gap && *gap <= within + kSlack)) << within - least;
+      }
+    }
     if (!gap) {
       EXPECT_EQ(clearance.lower, std::numeric_limits<double>::infinity());
       EXPECT_TRUE(clearance.first.name.empty());
@@ -115,7 +125,7 @@ TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
     ++above_zero;
     EXPECT_NEAR(clearance.lower, static_cast<double>(*gap), 1e-8);
     EXPECT_NEAR(clearance.upper, static_cast<double>(*gap), 1e-10);
-    EXPECT_TRUE(checker.check_config(q, scratch));
+    EXPECT_TRUE(checked.free(q));
     // The two that are named are that far apart.
     bool found = false;
     std::vector<Pose> poses;
@@ -135,15 +145,14 @@ TEST(RobotChecker, ClearanceIsNeverAboveTheLeastGap) {
 TEST(RobotChecker, ExplainsEveryPairThatTouches) {
   Random random(seeded(74));
   int contacts = 0;
-  for (int n = 0; n < scaled(150, 30); ++n) {
+  for (int n = 0; n < scaled(250, 40); ++n) {
     const auto [scene, oracle] = random_scene(random);
-    const RobotChecker checker = scene.snapshot();
-    RobotChecker::Scratch scratch(checker);
+    Checked checked(scene);
     const std::vector<double> q = random_configuration(random, oracle.robot, 3.0);
     std::vector<Pose> poses;
     forward_kinematics(oracle.robot, q, poses, oracle.world_from_root);
-    const std::vector<CheckedContact> found = checker.explain(q, scratch);
-    EXPECT_EQ(found.empty(), checker.check_config(q, scratch));
+    const std::vector<CheckedContact> found = checked.explain(q);
+    EXPECT_EQ(found.empty(), checked.free(q));
     std::size_t touching = 0;
     for (const OraclePair& pair : oracle.pairs) {
       const long double gap = oracle.gap_of(pair, poses);
@@ -152,6 +161,11 @@ TEST(RobotChecker, ExplainsEveryPairThatTouches) {
       for (const CheckedContact& contact : found) {
         if (names != std::set<std::string>{contact.first.name, contact.second.name}) continue;
         ++touching;
+        for (const CheckedBody* body : {&contact.first, &contact.second}) {
+          EXPECT_EQ(body->kind, body->name.starts_with("link")     ? CheckedBody::Kind::kLink
+                                : body->name.starts_with("object") ? CheckedBody::Kind::kAttached
+                                                                   : CheckedBody::Kind::kObstacle);
+        }
         EXPECT_LE(gap, kSlack);
         EXPECT_LE(contact.overlap_depth, -gap);
         EXPECT_NEAR(contact.overlap_depth, static_cast<double>(-gap), 1e-10) << "the deepest";
@@ -180,137 +194,81 @@ TEST(RobotChecker, ExplainsEveryPairThatTouches) {
       if (gap <= 0.0L) --touching;
     }
     EXPECT_EQ(touching, 0U) << "each pair that touches once";
-    const auto one = checker.explain(q, scratch, {.max_contacts = 1});
+    const auto one = checked.explain(q, {.max_contacts = 1});
     EXPECT_EQ(one.size(), std::min<std::size_t>(found.size(), 1));
   }
   EXPECT_GT(contacts, effort(20, 3));
 }
 
-// An attached object is tested as the same tree on a link of its own that stands in its link.
-TEST(RobotChecker, AttachedObjectsAreLinks) {
-  Random random(seeded(75));
+// Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
+TEST(RobotChecker, AnswersAsTheExactQueriesDoForOddFrames) {
+  Random random(seeded(23));
   int hits = 0;
-  for (int n = 0; n < scaled(150, 20); ++n) {
-    RobotModel robot = random_robot(random, 4, false);
-    for (const auto& link : {"link_0", "link_1", "link_2", "link_3", "link_4"}) {
-      robot.attach(link, std::make_shared<const SphereTree>(
-                             build_tree(random_spheres(random, 10, 0.25, 0.1))));
+  for (int i = 0; i < scaled(4000, 300); ++i) {
+    RobotModel robot("base");
+    const double far = std::pow(10.0, random.between(0.0, 8.0));
+    std::string parent = "base";
+    for (int k = 0; k < 6; ++k) {
+      Joint joint = turning(0.0, 0.0);
+      const double off = std::pow(10.0, random.between(-8.5, -5.5));
+      joint.axis = {off * random.between(-1.0, 1.0), off * random.between(-1.0, 1.0), -1.0};
+      joint.parent_from_joint = random.pose(0.3);
+      const std::string link = "link_" + std::to_string(k);
+      robot.add_link(link, parent, joint);
+      parent = link;
     }
-    const auto tool =
-        std::make_shared<const SphereTree>(build_tree(random_spheres(random, 20, 0.4, 0.06)));
-    const auto wall =
-        std::make_shared<const SphereTree>(build_tree(random_spheres(random, 30, 1.0, 0.1)));
-    const Pose pose = random.pose(0.3);
-    RobotScene attached(robot);
-    RobotModel with_link = robot;
-    with_link.add_link("tool", "link_4", {.parent_from_joint = pose});
-    with_link.attach("tool", tool);
-    AllowedCollisions allowed(with_link);
-    for (const auto& link : robot.links()) {
-      const auto reason =
-          allowed.reason(with_link.find_link(link.name), with_link.find_link("tool"));
-      if (reason != AllowedReason::kRigid && reason != AllowedReason::kTested) {
-        allowed.forbid(link.name, "tool");
-      }
+    // A link that leads the tree's offset back to the joint.
+    const Eigen::Vector3d offset = far * random.point(1.0);
+    robot.add_link("tool", parent,
+                   {.name = "bolt", .parent_from_joint = Pose::from_translation(-offset)});
+    const Sphere sphere{offset + random.point(0.2), 0.1};
+    robot.attach("tool", one_sphere_tree(sphere.center, sphere.radius));
+    const std::vector<double> configuration = random_configuration(random, robot, 3.2);
+    std::vector<Pose> world_from_link;
+    forward_kinematics(robot, configuration, world_from_link);
+    const double gap =
+        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.between(-9.0, -5.0));
+    const Eigen::Vector3d away = far * random.point(1.0);
+    const Eigen::Vector3d center = world_from_link.back() * sphere.center +
+                                   (sphere.radius + 0.2 + gap) * random.point(1.0).normalized();
+    const std::vector<PlacedTree> obstacles = {
+        {one_sphere_tree(away, 0.2), Pose::from_translation(center - away)}};
+    SCOPED_TRACE(testing::Message() << i << ' ' << far);
+    const bool expected = answer(robot, obstacles, configuration);
+    for (const InstructionSet set : instruction_sets()) {
+      Checked checked(obstacle_checker(robot, obstacles, {.instructions = set}));
+      EXPECT_EQ(checked.free(configuration), !expected);
     }
-    RobotScene linked(with_link);
-    linked.set_allowed_collisions(allowed);
-    attached.attach("tool", "link_4", tool, pose);
-    for (RobotScene* scene : {&attached, &linked}) scene->add("wall", wall, Pose());
-    const RobotChecker a = attached.snapshot();
-    const RobotChecker b = linked.snapshot();
-    RobotChecker::Scratch scratch_a(a);
-    RobotChecker::Scratch scratch_b(b);
-    for (int i = 0; i < 10; ++i) {
-      const std::vector<double> q = random_configuration(random, robot, 3.0);
-      EXPECT_EQ(a.check_config(q, scratch_a), b.check_config(q, scratch_b));
-      const auto told_a = a.explain(q, scratch_a);
-      const auto told_b = b.explain(q, scratch_b);
-      ASSERT_EQ(told_a.size(), told_b.size());
-      for (std::size_t k = 0; k < told_a.size(); ++k) {
-        EXPECT_EQ(told_a[k].first.name, told_b[k].first.name);
-        EXPECT_EQ(told_a[k].first.sphere, told_b[k].first.sphere);
-        EXPECT_EQ(told_a[k].overlap_depth, told_b[k].overlap_depth);
-        if (told_a[k].first.name == "tool") {
-          EXPECT_EQ(told_a[k].first.kind, CheckedBody::Kind::kAttached);
-          EXPECT_EQ(told_b[k].first.kind, CheckedBody::Kind::kLink);
-          ++hits;
-        }
-      }
-    }
-    attached.detach("tool");
-    const RobotChecker bare = attached.snapshot();
-    RobotChecker::Scratch scratch(bare);
-    const std::vector<double> q = random_configuration(random, robot, 3.0);
-    for (const CheckedContact& contact : bare.explain(q, scratch)) {
-      EXPECT_NE(contact.first.name, "tool");
-    }
+    hits += expected ? 1 : 0;
+    if (HasFailure()) return;
   }
-  EXPECT_GT(hits, effort(30, 2));
-}
-
-TEST(RobotChecker, ManyAndThreadsAnswerAsOne) {
-  Random random(seeded(76));
-  for (int n = 0; n < scaled(20, 4); ++n) {
-    const auto [scene, oracle] = random_scene(random);
-    for (const bool enforce : {false, true}) {
-      const RobotChecker checker = scene.snapshot({.enforce_limits = enforce});
-      const auto variables = static_cast<std::size_t>(oracle.robot.variable_count());
-      const std::size_t count = static_cast<std::size_t>(effort(1500, 600));
-      std::vector<double> configurations;
-      std::vector<std::uint8_t> expected;
-      RobotChecker::Scratch scratch(checker);
-      for (std::size_t i = 0; i < count; ++i) {
-        const double size = i % 50 == 0 ? 150.0 : 3.0;
-        const std::vector<double> q = random_configuration(random, oracle.robot, size);
-        configurations.insert(configurations.end(), q.begin(), q.end());
-        expected.push_back(checker.check_config(q, scratch) ? 1 : 0);
-      }
-      std::vector<std::uint8_t> free(count, 7);
-      checker.check_configs(configurations, scratch, free);
-      EXPECT_EQ(free, expected);
-      std::vector<RobotChecker::Scratch> scratches;
-      for (int i = 0; i < 3; ++i) scratches.emplace_back(checker);
-      std::fill(free.begin(), free.end(), std::uint8_t{7});
-      checker.check_configs(configurations, scratches, free);
-      EXPECT_EQ(free, expected);
-      if (variables == 0) continue;
-      configurations[(count - 1) * variables] = std::numeric_limits<double>::quiet_NaN();
-      EXPECT_THROW(checker.check_configs(configurations, scratches, free), Error);
-      EXPECT_THROW(checker.check_configs(configurations, scratch, free), Error);
-    }
-  }
+  EXPECT_GT(hits, effort(1000, 100));
 }
 
 // Two spheres at the ends of arms that turn about the same axis.
 RobotScene two_arms() {
-  RobotModel robot("base");
-  robot.add_link("a", "base", {.type = JointType::kContinuous});
-  robot.add_link("b", "base", {.type = JointType::kContinuous});
-  robot.attach("a", one_sphere_tree({1, 0, 0}, 0.1));
+  RobotModel robot = one_arm(wheel(), {1, 0, 0}, 0.1);
+  robot.add_link("b", "base", wheel());
   robot.attach("b", one_sphere_tree({1, 0, 0}, 0.1));
   return RobotScene(robot);
 }
 
 TEST(RobotChecker, TellsNoLessPaddingThanIsAskedFor) {
   RobotScene scene = two_arms();
-  scene.set_padding("a", 0.1);
+  scene.set_padding("arm", 0.1);
   scene.set_padding("b", 0.7);
   ASSERT_LT(static_cast<long double>(0.1 + 0.7), 0.1L + 0.7L - 1e-18L);
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
-  const auto told = checker.explain(std::vector<double>{0.0, 0.5}, scratch);
+  const auto told = Checked(scene).explain(Configuration{0.0, 0.5});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_GE(static_cast<long double>(told[0].padding),
             static_cast<long double>(0.1) + static_cast<long double>(0.7));
 }
 
 TEST(RobotChecker, NoClearanceIsPromisedWhereNoErrorIsKnown) {
-  const RobotChecker checker = two_arms().snapshot();
-  RobotChecker::Scratch scratch(checker);
-  const RobotClearance usual = checker.clearance(std::vector<double>{99.0, 97.0}, scratch);
+  Checked checked(two_arms());
+  const RobotClearance usual = checked.clearance(Configuration{99.0, 97.0});
   EXPECT_GT(usual.lower, 1.0);
-  const RobotClearance beyond = checker.clearance(std::vector<double>{101.0, 99.0}, scratch);
+  const RobotClearance beyond = checked.clearance(Configuration{101.0, 99.0});
   EXPECT_EQ(beyond.lower, 0.0);
   EXPECT_NEAR(beyond.upper, usual.upper, 1e-9);
 }

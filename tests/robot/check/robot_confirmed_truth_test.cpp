@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contacts confirmed on meshes that are not convex against FCL's distances of these meshes and a
-// point-in-solid test: nothing missed, and nothing extra but within rounding.
+// Contacts confirmed on meshes that are not convex, of self pairs and with obstacles of every kind,
+// padded and not, against FCL's distances of these meshes, a point-in-solid test, and distances of
+// convex cells: nothing missed, and nothing extra but within rounding.
 
 #include "base/rounding.h"
 #include "collide/meshes/solid_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
+#include "tests/robot/check/checked.h"
 #include "tests/robot/check/voxel_solids.h"
 #include "tests/robot/robots.h"
+#include "tests/robot/solid_oracle.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -18,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,11 +30,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Voxels, or one sphere about the origin.
+// FCL is no judge nearer to contact, nor are alternating projections.
+constexpr double kUnclear = 1e-6, kUnclearProjection = 1e-3;
+
+// Voxels, a primitive, or one sphere about the origin.
 struct Shape {
-  std::shared_ptr<const VoxelSolid> voxels;  // null: the sphere
-  double radius = 0.0;
+  std::shared_ptr<const VoxelSolid> voxels{};
+  double radius = 0.0;  // of the sphere, or one around the primitive
   double padding = 0.0;
+  std::optional<Primitive> primitive{};
 
   std::shared_ptr<const SphereTree> tree() const {
     return voxels ? cover_of(voxels->covered()) : one_sphere_tree(Vector3d::Zero(), radius);
@@ -41,6 +49,12 @@ double gap_between(const Shape& a, const Pose& world_from_a, const Shape& b,
                    const Pose& world_from_b) {
   if (a.voxels && b.voxels) {
     return distance_between(*a.voxels, world_from_a, *b.voxels, world_from_b);
+  }
+  if (b.primitive) {
+    if (a.voxels)
+      return a.voxels->distance_from(world_from_a, *b.primitive, b.radius, world_from_b);
+    const Vector3d center = world_from_b.inverse() * world_from_a.translation();
+    return static_cast<double>(distance_to(*b.primitive, center.cast<Wide>())) - a.radius;
   }
   if (!a.voxels && !b.voxels) {
     const Vector3d off = world_from_a.translation() - world_from_b.translation();
@@ -69,6 +83,9 @@ class VoxelScene {
         TriangleMesh mesh = shape.voxels->mesh();
         mesh.vertex_error = shape.padding = 0.01;
         scene_.add(name, std::make_shared<const SolidMesh>(mesh), pose);
+      } else if (k == 1) {
+        shape = random_solid(random);
+        scene_.add(name, *shape.primitive, pose);
       } else if (k == 2 && !shape.voxels) {
         scene_.add(name, Primitive(SolidSphere{shape.radius}), pose);
         shape.padding = 0.0;
@@ -92,21 +109,26 @@ class VoxelScene {
          .meshes = is_confirmed ? meshes_ : std::vector<std::shared_ptr<const CoveredMesh>>()});
   }
 
-  // The least distance, less the padding, of all that is tested against each other; -1 where two
-  // have a point in common.
+  // The least distance, less the padding, of all that is tested against each other and within
+  // kFarApart; -1 where two have a point in common; 0 where it is unclear whether they touch.
   double gap(std::span<const double> configuration) const {
     std::vector<Pose> poses;
     forward_kinematics(robot_, configuration, poses);
     double least = 1.0;
+    bool is_unclear = false;
     const auto take = [&](double distance, double padding) {
+      if (distance > kFarApart) return;  // a lower bound, above all padding
       least = std::min(least, distance <= 0.0 ? -1.0 : distance - padding);
     };
     const auto against_obstacles = [&](const Shape& body, const Pose& pose, bool is_second) {
       for (std::size_t k = 0; k < obstacles_.size(); ++k) {
         const bool is_padded = is_second && std::find(padded_with_.begin(), padded_with_.end(),
                                                       k) != padded_with_.end();
-        take(gap_between(body, pose, obstacles_[k].shape, obstacles_[k].pose),
-             body.padding + obstacles_[k].shape.padding + (is_padded ? kBetween : 0.0));
+        const Shape& shape = obstacles_[k].shape;
+        const double padding = body.padding + shape.padding + (is_padded ? kBetween : 0.0);
+        const double distance = gap_between(body, pose, shape, obstacles_[k].pose);
+        is_unclear |= shape.primitive && std::abs(distance - padding) < kUnclearProjection;
+        take(distance < 1e-6 && shape.primitive ? 0.0 : distance, padding);
       }
       const double lowest =
           body.voxels ? body.voxels->lowest(pose) : pose.translation().z() - body.radius;
@@ -123,7 +145,7 @@ class VoxelScene {
       }
       if (i < last) take(gap_between(bodies_[i], poses[i], attached_, object), bodies_[i].padding);
     }
-    return least;
+    return is_unclear && least > -kUnclearProjection ? 0.0 : least;
   }
 
  private:
@@ -134,8 +156,15 @@ class VoxelScene {
   static constexpr double kFloor = -1.2;
   static constexpr double kBetween = 0.03;
 
+  static Shape random_solid(Random& random) {
+    const double radius = random.between(0.05, 0.15), length = random.between(0.05, 0.4);
+    const Primitive solids[] = {Box{{radius, 2.0 * radius, length}}, Cylinder{radius, length},
+                                Capsule{radius, length}};
+    return {.radius = length + 2.0 * radius, .primitive = solids[random.index(3)]};
+  }
+
   Shape random_shape(Random& random, double cell_size) {
-    if (random.whole(0, 4) == 0) return {nullptr, 0.8 * cell_size};
+    if (random.whole(0, 4) == 0) return {.radius = 0.8 * cell_size};
     const int cells = cell_size > 0.3 ? 1 : random.whole(2, 7);
     const auto voxels = std::make_shared<const VoxelSolid>(random, cells, cell_size);
     meshes_.push_back(voxels->covered());
@@ -174,34 +203,38 @@ class VoxelScene {
   std::vector<std::size_t> padded_with_;  // obstacles from which the second link keeps kBetween
 };
 
-// FCL is no judge nearer to contact.
-constexpr double kUnclear = 1e-6;
-
 TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
+  const std::vector<InstructionSet> sets = instruction_sets();
   Random random(seeded(271));
   int counts[2] = {}, alarms = 0;
   for (int i = 0; i < scaled(60, 12); ++i) {
     const VoxelScene scene(random, random.whole(3, 6));
-    const RobotChecker checker = scene.checker(best_instruction_set(), true);
-    const RobotChecker spheres = scene.checker(best_instruction_set(), false);
-    RobotChecker::Scratch scratch(checker), sphere_scratch(spheres);
+    Checked spheres(scene.checker(best_instruction_set(), false));
     std::vector<double> queried;
     std::vector<std::uint8_t> expected;
+    std::vector<double> gaps;
     for (int k = 0; k < 40; ++k) {
-      const std::vector<double> at = random_configuration(random, scene.robot(), 1.5);
+      const Configuration at = random_configuration(random, scene.robot(), k == 0 ? 200.0 : 1.5);
       const double gap = scene.gap(at);
       if (std::abs(gap) < kUnclear) continue;
       const bool is_free = gap > 0.0;
-      ASSERT_EQ(checker.check_config(at, scratch), is_free) << i << ' ' << k << ' ' << gap;
-      ASSERT_EQ(checker.explain(at, scratch).empty(), is_free) << i << ' ' << k << ' ' << gap;
+      gaps.push_back(gap);
       queried.insert(queried.end(), at.begin(), at.end());
       expected.push_back(is_free ? 1 : 0);
       ++counts[is_free];
-      alarms += is_free && !spheres.check_config(at, sphere_scratch);
+      alarms += is_free && !spheres.free(at);
     }
-    std::vector<std::uint8_t> many(expected.size());
-    checker.check_configs(queried, scratch, many);
-    EXPECT_EQ(many, expected) << i;
+    const auto variables = static_cast<std::size_t>(scene.robot().variable_count());
+    for (const InstructionSet set : sets) {
+      Checked checked(scene.checker(set, true));
+      EXPECT_EQ(checked.free(queried, expected.size()), expected) << i;
+      for (std::size_t k = 0; k < expected.size(); ++k) {
+        const auto at = std::span(queried).subspan(k * variables, variables);
+        ASSERT_EQ(checked.free(at), expected[k] != 0) << i << ' ' << k << ' ' << gaps[k];
+        ASSERT_EQ(checked.explain(at).empty(), expected[k] != 0) << i << ' ' << k;
+        ASSERT_LE(checked.clearance(at).lower, std::max(0.0, gaps[k]) + kUnclear);
+      }
+    }
   }
   EXPECT_GT(counts[0], effort(300, 20));
   EXPECT_GT(counts[1], effort(300, 20));
@@ -209,45 +242,49 @@ TEST(RobotConfirmedTruth, ConfigurationsAgreeWithFcl) {
 }
 
 TEST(RobotConfirmedTruth, NoContactInAMotionThatIsFree) {
+  const std::vector<InstructionSet> sets = instruction_sets();
   Random random(seeded(272));
-  int free = 0, hits = 0, unknown = 0, alarms = 0;
+  VerdictCounts counts;
+  int alarms = 0;
   for (int i = 0; i < scaled(60, 12); ++i) {
     const VoxelScene scene(random, random.whole(3, 6));
-    const RobotChecker checker = scene.checker(best_instruction_set(), true);
-    const RobotChecker spheres = scene.checker(best_instruction_set(), false);
-    RobotChecker::Scratch scratch(checker), sphere_scratch(spheres);
+    Checked checked(scene.checker(sets[random.index(sets.size())], true));
+    Checked spheres(scene.checker(best_instruction_set(), false));
     for (int k = 0; k < 8; ++k) {
-      const std::vector<double> from = random_configuration(random, scene.robot(), 1.5);
-      std::vector<double> to =
-          random_configuration(random, scene.robot(), random.between(0.0, 0.6));
-      for (std::size_t v = 0; v < to.size(); ++v) to[v] += from[v];
+      const Configuration from = random_configuration(random, scene.robot(), 1.5);
+      const Configuration to =
+          moved(from, random_configuration(random, scene.robot(), random.between(0.0, 0.6)));
       if (k % 4 != 0 && scene.gap(from) < 0.0) continue;
-      const EdgeResult result = checker.check_edge(from, to, scratch, {.first = k % 2 == 0});
-      const auto gap_at = [&](double t) {
-        std::vector<double> at;
-        for (std::size_t v = 0; v < to.size(); ++v) at.push_back((1.0 - t) * from[v] + t * to[v]);
-        return scene.gap(at);
-      };
+      const EdgeResult result = checked.edge(from, to, {.first = k % 2 == 0});
+      double least = 1.0;
       constexpr int kSteps = 60;
       for (int step = 0; step <= kSteps; ++step) {
         const double t = static_cast<double>(step) / kSteps;
-        if (result.verdict != Verdict::kFree && t >= result.free_until) break;
-        ASSERT_GT(gap_at(t), -kUnclear) << i << ' ' << k << ' ' << t;
+        const double gap = scene.gap(on_the_way(from, to, t));
+        least = std::min(least, gap);
+        if (result.verdict != Verdict::kFree && t >= result.free_until) continue;
+        ASSERT_GT(gap, -kUnclear) << i << ' ' << k << ' ' << t;
       }
       if (result.verdict == Verdict::kCollision) {
-        ASSERT_LT(gap_at(result.contact_at), kUnclear) << i << ' ' << k;
+        ASSERT_LT(scene.gap(on_the_way(from, to, result.contact_at)), kUnclear) << i << ' ' << k;
       }
-      (result.verdict == Verdict::kFree        ? free
-       : result.verdict == Verdict::kCollision ? hits
-                                               : unknown) += 1;
-      alarms += result.verdict == Verdict::kFree &&
-                spheres.check_edge(from, to, sphere_scratch).verdict != Verdict::kFree;
+      ASSERT_FALSE(least > 0.05 && result.verdict != Verdict::kFree) << "what is free by far";
+      counts.count(result.verdict);
+      alarms +=
+          result.verdict == Verdict::kFree && spheres.edge(from, to).verdict != Verdict::kFree;
     }
   }
-  EXPECT_GT(free, effort(40, 5));
-  EXPECT_GT(hits, effort(40, 0));
+  EXPECT_GT(counts.free, effort(40, 5));
+  EXPECT_GT(counts.hits, effort(40, 0));
   EXPECT_GT(alarms, effort(15, 0));
-  EXPECT_LE(unknown, 1 + (free + hits) / 50);
+  EXPECT_LE(counts.unknown, 1 + (counts.free + counts.hits) / 50);
+}
+
+RobotModel turned(const std::shared_ptr<const CoveredMesh>& mesh) {
+  RobotModel robot("base");
+  robot.add_link("link", "base", wheel());
+  robot.attach("link", cover_of(mesh));
+  return robot;
 }
 
 // No surfaces touch, in configurations and all along a motion.
@@ -266,19 +303,16 @@ TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
   for (const double padding : {0.0, 0.01}) {
     for (const bool is_inside : {true, false}) {  // the robot's body is
       for (const ObstacleShape& shape : is_inside ? around : inside) {
-        RobotModel robot("base");
-        robot.add_link("link", "base", {.name = "joint", .type = JointType::kContinuous});
-        robot.attach("link", cover_of((is_inside ? small : large).covered()));
-        RobotScene scene(robot);
+        RobotScene scene(turned((is_inside ? small : large).covered()));
         scene.set_padding("link", padding);
         scene.add("shape", shape, random.pose(0.1));
-        const RobotChecker checker = scene.snapshot({.meshes = {small.covered(), large.covered()}});
-        RobotChecker::Scratch scratch(checker);
-        const std::vector<double> from = {0.0}, to = {3.0};
-        EXPECT_FALSE(checker.check_config(from, scratch)) << is_inside << ' ' << padding;
-        EXPECT_FALSE(checker.explain(from, scratch).empty()) << is_inside << ' ' << padding;
-        EXPECT_EQ(checker.check_edge(from, to, scratch).verdict, Verdict::kCollision)
-            << is_inside << ' ' << padding;
+        Checked checked(scene, {.meshes = {small.covered(), large.covered()}});
+        SCOPED_TRACE(testing::Message() << is_inside << ' ' << padding);
+        const Configuration from = {0.0}, to = {3.0};
+        EXPECT_FALSE(checked.free(from));
+        EXPECT_EQ(checked.free(std::vector{0.0, 0.5, 1.0}, 3), std::vector<std::uint8_t>(3));
+        EXPECT_FALSE(checked.explain(from).empty());
+        EXPECT_EQ(checked.edge(from, to).verdict, Verdict::kCollision);
       }
     }
   }
@@ -288,15 +322,11 @@ TEST(RobotConfirmedTruth, WhatIsInsideTouches) {
 TEST(RobotConfirmedTruth, TheLargestClearanceIsAccepted) {
   Random random(seeded(273));
   const VoxelSolid body(random, 4, 0.1);
-  RobotModel robot("base");
-  robot.add_link("link", "base", {.name = "joint", .type = JointType::kContinuous});
-  robot.attach("link", cover_of(body.covered()));
-  RobotScene scene(robot);
+  RobotScene scene(turned(body.covered()));
   scene.set_padding("link", 0.01);
   scene.add("box", Primitive(Box{{0.1, 0.1, 0.1}}), Pose::from_translation({5.0, 0.0, 0.0}));
-  const RobotChecker checker = scene.snapshot({.meshes = {body.covered()}});
-  RobotChecker::Scratch scratch(checker);
-  EXPECT_TRUE(checker.within(std::vector<double>{0.0}, kMaxCoordinate, scratch));
+  Checked checked(scene, {.meshes = {body.covered()}});
+  EXPECT_TRUE(checked.checker.within(std::vector<double>{0.0}, kMaxCoordinate, checked.scratch));
 }
 
 }  // namespace

@@ -2,12 +2,11 @@
 #include "base/error.h"
 #include "collide/collide.h"
 #include "robot/check/robot_collision.h"
-#include "robot/check/robot_scene.h"
 #include "robot/check/scene_setup.h"
 #include "robot/model/kinematics.h"
 #include "robot/pairs/allowed_collisions.h"
-#include "spheretree/build.h"
 #include "tests/robot/box_robots.h"
+#include "tests/robot/check/checked.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
@@ -46,11 +45,6 @@ struct Scene {
     }
     return nullptr;
   }
-  bool is_tested(std::size_t link, std::size_t obstacle) const {
-    return std::none_of(options.untested.begin(), options.untested.end(), [&](const auto& pair) {
-      return pair.link == static_cast<int>(link) && pair.obstacle == obstacle;
-    });
-  }
 };
 
 // How deep two spheres overlap, to some 18 digits of the scene.
@@ -75,7 +69,6 @@ Depths expected_depths(const Scene& scene, std::span<const double> configuration
   Depths result;
   for (std::size_t link = 0; link < scene.robot.links().size(); ++link) {
     for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-      if (!scene.is_tested(link, i)) continue;
       const SphereTree& other = *scene.obstacles[i].tree;
       const Pose& world_from_other = scene.obstacles[i].world_from_tree;
       for (const auto& tree : scene.robot.links()[link].trees) {
@@ -117,28 +110,21 @@ struct Count {
 };
 
 // Queries all contacts of a configuration and the first few.
-void expect_explained(const Scene& scene, const ObstacleChecker& checker,
-                      std::span<const double> configuration, RobotChecker::Scratch& scratch,
+void expect_explained(const Scene& scene, Checked& checked, std::span<const double> configuration,
                       Count& count) {
   const Depths expected = expected_depths(scene, configuration);
-  const std::vector<CheckedContact> contacts = checker.explain(configuration, scratch);
-  ASSERT_EQ(!contacts.empty(), checker.collides(configuration, scratch));
+  const std::vector<CheckedContact> contacts = checked.explain(configuration);
+  ASSERT_EQ(contacts.empty(), checked.free(configuration));
   ASSERT_EQ(contacts.size(), expected.size());
   std::vector<Pose> poses;
   forward_kinematics(scene.robot, configuration, poses, scene.options.world_from_root);
-  std::set<std::pair<long, std::size_t>> seen;
-  std::pair<long, std::size_t> before{std::numeric_limits<long>::min(), 0};
+  std::set<std::pair<std::size_t, std::size_t>> seen;
   for (const CheckedContact& found : contacts) {
     const auto link = static_cast<std::size_t>(scene.robot.find_link(found.first.name));
     std::size_t obstacle = 0;
     while (obstacle_name(obstacle) != found.second.name) ++obstacle;
-    const std::pair place(-static_cast<long>(link), obstacle);
-    // Links from the last on; pairs of which one side alone is confirmed come first.
-    if (scene.options.meshes.empty()) {
-      ASSERT_LT(before, place);
-    }
+    const std::pair place(link, obstacle);
     ASSERT_TRUE(seen.insert(place).second);
-    before = place;
     const auto depth = expected.find({link, obstacle});
     ASSERT_NE(depth, expected.end());
     const SphereTree& tree = *scene.robot.links()[link].trees.at(found.first.tree);
@@ -162,7 +148,7 @@ void expect_explained(const Scene& scene, const ObstacleChecker& checker,
   }
   for (const std::size_t limit : {0U, 1U, 2U}) {
     const std::vector<CheckedContact> some =
-        checker.explain(configuration, scratch, {.max_contacts = limit});
+        checked.explain(configuration, {.max_contacts = limit});
     ASSERT_EQ(some.size(), std::min(limit, contacts.size()));
     for (std::size_t k = 0; k < some.size(); ++k) {
       ASSERT_EQ(some[k].first.name, contacts[k].first.name);
@@ -175,72 +161,16 @@ void expect_explained(const Scene& scene, const ObstacleChecker& checker,
   (contacts.empty() ? count.none : contacts.size() == 1 ? count.one : count.many) += 1;
 }
 
-// Robots with links that stand and links with several trees; some pairs are not tested; some
-// positions are far out of the usual range.
-TEST(RobotExplain, TellsWhatTouchesWhat) {
-  Random random(seeded(81));
-  Count count;
-  for (int i = 0; i < scaled(600, 40); ++i) {
-    Scene scene{.robot = random_robot_with_trees(random, 0.3)};
-    for (int k = 0; k < 2; ++k) {
-      for (const PlacedTree& other : random_obstacles(random)) scene.obstacles.push_back(other);
-    }
-    if (i % 2 == 1) scene.options.world_from_root = random_root(random, 3.0);
-    for (int k = i % 4; k > 0; --k) {
-      scene.options.untested.push_back(
-          {random.whole(0, static_cast<int>(scene.robot.links().size()) - 1),
-           random.bits() % scene.obstacles.size()});
-    }
-    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotChecker::Scratch scratch(checker);
-    for (int k = 0; k < 30; ++k) {
-      const double largest = k % 10 == 0 ? 99.0 : k % 10 == 1 ? 300.0 : 3.2;
-      const std::vector<double> at = random_configuration(random, scene.robot, largest);
-      ASSERT_EQ(!checker.explain(at, scratch).empty(),
-                answer(scene.robot, scene.obstacles, at, scene.options));
-      ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count))
-          << i << ' ' << k;
-    }
-  }
-  EXPECT_GT(count.none, effort(1000, 80));
-  EXPECT_GT(count.one, effort(500, 40));
-  EXPECT_GT(count.many, effort(300, 20));
-}
-
-// A sphere of the robot is met by one at a distance that rounding can just tell from contact.
-TEST(RobotExplain, IsEmptyExactlyIfFreeNearContact) {
-  Random random(seeded(82));
-  Count count;
-  for (int i = 0; i < scaled(800, 100); ++i) {
-    Scene scene{.robot = random_robot_with_trees(random, 0.3)};
-    if (i % 2 == 1) scene.options.world_from_root = random_root(random, 1000.0);
-    const std::vector<double> at =
-        random_configuration(random, scene.robot, i % 5 == 0 ? 300.0 : 3.2);
-    std::vector<Pose> poses;
-    forward_kinematics(scene.robot, at, poses, scene.options.world_from_root);
-    const std::optional<Sphere> sphere = random_sphere_of(random, scene.robot, poses);
-    if (!sphere) continue;
-    const double gap =
-        (random.whole(0, 1) == 0 ? 1.0 : -1.0) * std::pow(10.0, random.between(-17.0, -5.0));
-    const Eigen::Vector3d center =
-        sphere->center + (sphere->radius + 0.1 + gap) * random.point(1.0).normalized();
-    scene.obstacles = {{one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation(center)}};
-    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotChecker::Scratch scratch(checker);
-    ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count)) << i;
-  }
-  EXPECT_GT(count.none, effort(100, 10));
-  EXPECT_GT(count.one, effort(100, 10));
-}
-
 // Along a path, so that the scratch remembers contacts and clearances; a link has a tree without a
 // mesh beside one with, and an obstacle has none.
 TEST(RobotExplain, TellsWhatMeshesTouch) {
+  const std::vector<InstructionSet> sets = instruction_sets();
   Random random(seeded(83));
   Count count;
   for (int i = 0; i < scaled(120, 10); ++i) {
     Scene scene{.robot = random_robot(random, random.whole(1, 6), i % 2 == 1)};
-    scene.options.world_from_root = random_root(random, 1.0);
+    scene.options = {.world_from_root = random_root(random, 1.0),
+                     .instructions = sets[random.index(sets.size())]};
     const auto covered = [&](double size) {
       scene.options.meshes.push_back(covered_tetrahedron(random, size));
       return cover_of(scene.options.meshes.back());
@@ -254,15 +184,13 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
       scene.obstacles.push_back({covered(random.between(0.05, size)), random.pose(1.5)});
     }
     scene.obstacles.push_back({random_tree(random, 0.2), random.pose(1.5)});
-    const ObstacleChecker checker(scene.robot, scene.obstacles, scene.options);
-    RobotChecker::Scratch scratch(checker);
+    Checked checked(obstacle_checker(scene.robot, scene.obstacles, scene.options));
     std::vector<double> at = random_configuration(random, scene.robot, 3.2);
     const std::vector<double> heading = random_configuration(random, scene.robot, 0.03);
     for (int k = 0; k < 40; ++k) {
       if (k % 20 == 19) at = random_configuration(random, scene.robot, k == 19 ? 300.0 : 3.2);
       for (std::size_t v = 0; v < at.size(); ++v) at[v] += heading[v];
-      ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checker, at, scratch, count))
-          << i << ' ' << k;
+      ASSERT_NO_FATAL_FAILURE(expect_explained(scene, checked, at, count)) << i << ' ' << k;
     }
   }
   EXPECT_GT(count.none, effort(100, 10));
@@ -271,17 +199,14 @@ TEST(RobotExplain, TellsWhatMeshesTouch) {
   EXPECT_GT(count.inside, effort(20, 1));
 }
 
-TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
-  RobotModel robot("base");
+TEST(RobotExplain, NamesLinks) {
+  RobotModel robot = one_arm(wheel(), {5, 0, 0}, 0.1);
   robot.attach("base", one_sphere_tree({0, 0, 0}, 0.1));
-  robot.add_link("arm", "base", {.name = "hinge", .type = JointType::kRevolute});
-  robot.attach("arm", one_sphere_tree({5, 0, 0}, 0.1));
   robot.attach("arm", one_sphere_tree({1, 0, 0}, 0.1));
-  const ObstacleChecker checker(
-      robot, {{one_sphere_tree({0, 0, 0.15}, 0.1), Pose()},
-              {one_sphere_tree({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}});
-  RobotChecker::Scratch scratch(checker);
-  const std::vector<CheckedContact> contacts = checker.explain(std::vector<double>{0.0}, scratch);
+  Checked checked(obstacle_checker(
+      robot, {{one_sphere_tree({0, 0, 0.15}, 0.1)},
+              {one_sphere_tree({1, 0, 0}, 0.1), Pose::from_translation({0.1, 0, 0})}}));
+  const std::vector<CheckedContact> contacts = checked.explain(Configuration{0.0});
   ASSERT_EQ(contacts.size(), 2U);
   EXPECT_EQ(contacts[0].first.name, "arm");
   EXPECT_EQ(contacts[0].first.tree, 1U);
@@ -292,10 +217,6 @@ TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
   EXPECT_EQ(contacts[1].first.tree, 0U);
   EXPECT_EQ(contacts[1].second.name, obstacle_name(0));
   EXPECT_NEAR(contacts[1].overlap_depth, 0.05, 1e-12);
-  EXPECT_THROW(checker.explain(std::vector<double>{}, scratch), Error);
-  EXPECT_THROW(
-      checker.explain(std::vector<double>{std::numeric_limits<double>::quiet_NaN()}, scratch),
-      Error);
 }
 
 }  // namespace
@@ -306,8 +227,6 @@ TEST(RobotExplain, NamesLinksAndRefusesBadInput) {
 namespace spherule::test {
 namespace {
 
-using Configuration = std::vector<double>;
-
 // Two thin bars one above the other, each in a sphere, that turn about one axis: the spheres
 // overlap in all configurations, the bars touch in none. A post stands away from both.
 class ClearanceScene : public testing::Test {
@@ -316,17 +235,14 @@ class ClearanceScene : public testing::Test {
     for (const int link : {1, 2}) {
       const double height = 0.03 * link;
       robot_.model.attach(robot_.model.links()[static_cast<std::size_t>(link)].name,
-                          std::make_shared<const SphereTree>(build_tree(
-                              std::vector<Sphere>{{{0.4, 0.0, height + 0.01}, kRadius}})));
+                          one_sphere_tree({0.4, 0.0, height + 0.01}, kRadius));
     }
     scene_.emplace(robot_.model);
     scene_->add("post", SolidSphere{0.1}, Pose::from_translation({1.5, 0.0, 0.04}));
   }
 
   RobotClearance clearance(const Configuration& configuration, const ClearanceRequest& request) {
-    const RobotChecker checker = scene_->snapshot();
-    RobotChecker::Scratch scratch(checker);
-    return checker.clearance(configuration, scratch, request);
+    return Checked(*scene_).clearance(configuration, request);
   }
 
   static constexpr double kRadius = 0.21;
@@ -368,23 +284,14 @@ namespace {
 // bumper fixed to that, and a bird that is 5 m above.
 BoxRobot slides() {
   BoxRobot robot{RobotModel("floor")};
-  const auto slide = [](const char* name, double lower) {
-    return Joint{.name = name,
-                 .type = JointType::kPrismatic,
-                 .axis = Eigen::Vector3d::UnitX(),
-                 .lower = lower,
-                 .upper = 1.0};
-  };
-  robot.model.add_link("sled", "floor", slide("push", 0.5));
-  robot.model.add_link("cart", "sled", slide("pull", -1.0));
+  robot.model.add_link("sled", "floor", sliding(0.5, 1.0, "push"));
+  robot.model.add_link("cart", "sled", sliding(-1.0, 1.0, "pull"));
   robot.model.add_link("bumper", "cart", {.name = "screw", .type = JointType::kFixed});
-  robot.model.add_link("bird", "cart", slide("fly", 0.0));
+  robot.model.add_link("bird", "cart", sliding(0.0, 1.0, "fly"));
   for (const char* const name : {"floor", "sled", "cart", "bumper", "bird"}) {
-    const int link = robot.model.find_link(name);
     const Eigen::Vector3d center(0, 0, std::string(name) == "bird" ? 5.0 : 0.0);
-    robot.add_boxes(link, {{center.array() - 0.1, center.array() + 0.1}});
-    robot.model.attach(
-        name, std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{center, 0.2}})));
+    robot.add_boxes(robot.model.find_link(name), {cube_at(center)});
+    robot.model.attach(name, one_sphere_tree(center, 0.2));
   }
   return robot;
 }
@@ -443,17 +350,11 @@ namespace {
 // A block that slides towards another one on the x axis: they touch where the slide is below 0.2.
 BoxRobot slide(double lower) {
   BoxRobot robot{RobotModel("block")};
-  robot.model.add_link("slider", "block",
-                       {.name = "slide",
-                        .type = JointType::kPrismatic,
-                        .axis = Eigen::Vector3d::UnitX(),
-                        .lower = lower,
-                        .upper = 1.0});
+  robot.model.add_link("slider", "block", sliding(lower, 1.0, "slide"));
   for (const int link : {0, 1}) {
-    robot.add_boxes(link, {{Eigen::Vector3d::Constant(-0.1), Eigen::Vector3d::Constant(0.1)}});
-    const std::vector<Sphere> sphere = {{Eigen::Vector3d::Zero(), 0.18}};
+    robot.add_boxes(link, {cube_at({0, 0, 0})});
     robot.model.attach(robot.model.links()[static_cast<std::size_t>(link)].name,
-                       std::make_shared<const SphereTree>(build_tree(sphere)));
+                       one_sphere_tree({0, 0, 0}, 0.18));
   }
   return robot;
 }

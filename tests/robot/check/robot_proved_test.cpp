@@ -8,7 +8,8 @@
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 #include "tests/robot/box_robots.h"
-#include "tests/robot/check/edge_oracle.h"
+#include "tests/robot/check/checked.h"
+#include "tests/robot/robots.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,8 +27,6 @@
 
 namespace spherule::test::robot_proved_test {
 namespace {
-
-using Configuration = std::vector<double>;
 
 // Boxes cut across their longest side, a sphere around each piece.
 std::vector<Sphere> coarse_cover(const std::vector<Eigen::AlignedBox3d>& boxes, int pieces) {
@@ -51,12 +51,14 @@ std::shared_ptr<const SphereTree> tree_of(const std::vector<Sphere>& spheres) {
 
 class ProvedRobot : public testing::Test {
  protected:
+  inline static const LinkPairOptions kShort{
+      .boxes = 300, .undecided_boxes = 300, .samples = 20, .threads = 1};
+
   void make(Random& random) {
     robot_ = random_box_robot(random, random.whole(2, 6), random.whole(0, 3) == 0,
                               random.whole(0, 3) == 0);
-    pairs_ = std::make_shared<const LinkPairs>(
-        prove_link_pairs(robot_.model, robot_.bodies,
-                         {.boxes = 300, .undecided_boxes = 300, .samples = 20, .threads = 1}));
+    pairs_ =
+        std::make_shared<const LinkPairs>(prove_link_pairs(robot_.model, robot_.bodies, kShort));
     RobotModel model = robot_.model;
     for (std::size_t i = 0; i < robot_.boxes.size(); ++i) {
       if (robot_.boxes[i].empty()) continue;
@@ -65,15 +67,12 @@ class ProvedRobot : public testing::Test {
     scene_.emplace(model);
     if (random.whole(0, 1) == 0) scene_->add("ball", SolidSphere{0.2}, random.pose(2.0));
     attach_tool(random);
-    plain_.emplace(scene_->snapshot());
-    plain_scratch_.emplace(*plain_);
+    plain_.emplace(*scene_);
     scene_->set_link_pairs(pairs_);
     if (tool_pairs_ != nullptr) scene_->set_attached_pairs("tool", tool_pairs_);
-    checkers_.clear();
-    scratches_.clear();
+    checked_.clear();
     for (const InstructionSet set : instruction_sets()) {
-      checkers_.push_back(scene_->snapshot({.instructions = set}));
-      scratches_.emplace_back(checkers_.back());
+      checked_.emplace_back(*scene_, RobotCheckerOptions{.instructions = set});
     }
   }
 
@@ -86,8 +85,7 @@ class ProvedRobot : public testing::Test {
     tool_boxes_ = {{corner, corner + Eigen::Vector3d(0.05, 0.1, 0.3)}};
     tool.add_boxes(tool_link_, tool_boxes_);
     tool_pairs_ = std::make_shared<const LinkPairs>(
-        prove_attached_pairs(robot_.model, robot_.bodies, tool.bodies.front(),
-                             {.boxes = 300, .undecided_boxes = 300, .samples = 20, .threads = 1}));
+        prove_attached_pairs(robot_.model, robot_.bodies, tool.bodies.front(), kShort));
     const std::string& name = robot_.model.links()[static_cast<std::size_t>(tool_link_)].name;
     // Its spheres are in a frame of its own, the proofs are in the link's.
     const Eigen::Vector3d origin = random.point(0.5);
@@ -110,23 +108,16 @@ class ProvedRobot : public testing::Test {
 
   // By all canonical tests and the proofs.
   bool touches(const Configuration& q) {
-    const std::vector<CheckedContact> contacts = plain_->explain(q, *plain_scratch_);
+    const std::vector<CheckedContact> contacts = plain_->explain(q);
     return !std::all_of(contacts.begin(), contacts.end(),
                         [&](const CheckedContact& contact) { return is_proved(contact, q); });
   }
 
-  // Within the limits, at places where boxes end, or beyond the limits.
-  Configuration random_in_ranges(Random& random) const {
-    Configuration result;
+  // Some are beyond the limits.
+  Configuration random_posture(Random& random) const {
     const double wider = random.whole(0, 4) == 0 ? 1.5 : 1.0;
-    for (const int j : robot_.model.variable_joints()) {
-      const Joint& joint = robot_.model.joints()[static_cast<std::size_t>(j)];
-      const double part =
-          random.whole(0, 1) == 0 ? random.between(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
-      double value = joint.lower + (joint.upper - joint.lower) * part;
-      if (joint.type == JointType::kContinuous) value += 6.283185307179586 * random.whole(-2, 2);
-      result.push_back(wider * value);
-    }
+    Configuration result = random_in_ranges(random, robot_.model);
+    for (double& value : result) value *= wider;
     return result;
   }
 
@@ -155,10 +146,8 @@ class ProvedRobot : public testing::Test {
   int tool_link_ = -1;
   std::vector<Eigen::AlignedBox3d> tool_boxes_;
   std::optional<RobotScene> scene_;
-  std::optional<RobotChecker> plain_;
-  std::optional<RobotChecker::Scratch> plain_scratch_;
-  std::vector<RobotChecker> checkers_;
-  std::vector<RobotChecker::Scratch> scratches_;
+  std::optional<Checked> plain_;
+  std::deque<Checked> checked_;
   std::vector<Pose> poses_;
 };
 
@@ -172,23 +161,17 @@ TEST_F(ProvedRobot, ConfigurationsAreFreeByProofsOrSpheres) {
     std::vector<std::uint8_t> truth;
     const int count = random.whole(1, 60);
     for (int i = 0; i < count; ++i) {
-      const Configuration q = random_in_ranges(random);
+      const Configuration q = random_posture(random);
       const bool is_free = !touches(q);
       free += is_free ? 1 : 0;
-      freed += is_free && !plain_->check_config(q, *plain_scratch_) ? 1 : 0;
+      freed += is_free && !plain_->free(q) ? 1 : 0;
       if (is_free) expect_solids_free(q);
       all.insert(all.end(), q.begin(), q.end());
       truth.push_back(is_free ? 1 : 0);
-      for (std::size_t k = 0; k < checkers_.size(); ++k) {
-        ASSERT_EQ(checkers_[k].check_config(q, scratches_[k]), is_free) << n << " " << k;
-      }
-      EXPECT_EQ(checkers_.front().explain(q, scratches_.front()).empty(), is_free);
+      for (Checked& checked : checked_) ASSERT_EQ(checked.free(q), is_free) << n;
+      EXPECT_EQ(checked_.front().explain(q).empty(), is_free);
     }
-    for (std::size_t k = 0; k < checkers_.size(); ++k) {
-      std::vector<std::uint8_t> found(truth.size(), 2);
-      checkers_[k].check_configs(all, scratches_[k], found);
-      ASSERT_EQ(found, truth) << n << " " << k;
-    }
+    for (Checked& checked : checked_) ASSERT_EQ(checked.free(all, truth.size()), truth) << n;
   }
   EXPECT_GT(freed, free / 60);
 }
@@ -201,20 +184,19 @@ TEST_F(ProvedRobot, MotionsAreFreeByProofsOrSpheres) {
   for (int n = 0; n < scaled(60, 10); ++n) {
     make(random);
     for (int i = 0; i < 20; ++i) {
-      const Configuration from = random_in_ranges(random);
-      Configuration to = random_in_ranges(random);
-      const double share = std::pow(10.0, random.between(-2.0, 0.0));
-      for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[k] + share * (to[k] - from[k]);
+      const Configuration from = random_posture(random);
+      const Configuration to =
+          on_the_way(from, random_posture(random), std::pow(10.0, random.between(-2.0, 0.0)));
       const EdgeRequest request{.resolution = 1e-4, .first = random.whole(0, 1) == 0};
-      for (std::size_t k = 0; k < checkers_.size(); ++k) {
-        const EdgeResult result = checkers_[k].check_edge(from, to, scratches_[k], request);
+      for (Checked& checked : checked_) {
+        const EdgeResult result = checked.edge(from, to, request);
         expect_so([&](const Configuration& q) { return touches(q); }, from, to, result,
                   effort(100, 20));
         if (HasFatalFailure()) return;
         unknown += result.verdict == Verdict::kUnknown ? 1 : 0;
         if (result.verdict != Verdict::kFree) continue;
         ++free;
-        freed += plain_->check_edge(from, to, *plain_scratch_).verdict != Verdict::kFree ? 1 : 0;
+        freed += plain_->edge(from, to).verdict != Verdict::kFree ? 1 : 0;
         for (int step = 0; step <= 20; ++step)
           expect_solids_free(on_the_way(from, to, step / 20.0));
       }
@@ -245,47 +227,34 @@ TEST_F(TwoBarScene, ReasonsAndExplanationsTellOfProofs) {
   EXPECT_EQ(scene.reason("first", "second"), AllowedReason::kTested);
   scene.set_link_pairs(pairs_);
   EXPECT_EQ(scene.reason("first", "second"), AllowedReason::kProvedNever);
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
+  Checked checked(scene);
   const Configuration aligned{0.0, 0.0};
-  EXPECT_TRUE(checker.check_config(aligned, scratch));
-  EXPECT_TRUE(checker.explain(aligned, scratch).empty());
-  const auto told = checker.explain(aligned, scratch, {.proved_free = true});
+  EXPECT_TRUE(checked.free(aligned));
+  EXPECT_TRUE(checked.explain(aligned).empty());
+  const auto told = checked.explain(aligned, {.proved_free = true});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_TRUE(told.front().is_proved_free);
   EXPECT_GT(told.front().overlap_depth, 0.0);
   // Beyond the limits nothing is proved.
-  EXPECT_FALSE(checker.check_config(Configuration{1.5, 1.5}, scratch));
-  EXPECT_FALSE(checker.explain(Configuration{1.5, 1.5}, scratch).front().is_proved_free);
-}
-
-TEST_F(TwoBarScene, ReasonsKnowOfPadding) {
-  RobotScene scene(robot_.model);
-  scene.set_link_pairs(pairs_);
-  scene.set_padding("first", "second", 0.001);
-  EXPECT_EQ(scene.reason("first", "second"), AllowedReason::kTested);
-  scene.set_padding("first", "second", 0.0);
-  EXPECT_EQ(scene.reason("second", "first"), AllowedReason::kProvedNever);
-  scene.set_padding("second", 0.001);
-  EXPECT_EQ(scene.reason("first", "second"), AllowedReason::kTested);
+  EXPECT_FALSE(checked.free(Configuration{1.5, 1.5}));
+  EXPECT_FALSE(checked.explain(Configuration{1.5, 1.5}).front().is_proved_free);
 }
 
 TEST_F(TwoBarScene, PaddingTakesProofsAway) {
   RobotScene scene(robot_.model);
   scene.set_link_pairs(pairs_);
-  const Configuration aligned{0.0, 0.0};
-  const auto is_free = [&](const RobotScene& padded) {
-    const RobotChecker checker = padded.snapshot();
-    RobotChecker::Scratch scratch(checker);
-    return checker.check_config(aligned, scratch);
+  const auto expect = [&](AllowedReason reason) {
+    EXPECT_EQ(scene.reason("second", "first"), reason);
+    const bool is_free = Checked(scene).free(Configuration{0.0, 0.0});
+    EXPECT_EQ(is_free, reason == AllowedReason::kProvedNever);
   };
-  EXPECT_TRUE(is_free(scene));
-  RobotScene body = scene;
-  body.set_padding("first", 0.02);
-  EXPECT_FALSE(is_free(body));
-  RobotScene both = scene;
-  both.set_padding("first", "second", 0.02);
-  EXPECT_FALSE(is_free(both));
+  expect(AllowedReason::kProvedNever);
+  scene.set_padding("first", "second", 0.02);
+  expect(AllowedReason::kTested);
+  scene.set_padding("first", "second", 0.0);
+  expect(AllowedReason::kProvedNever);
+  scene.set_padding("first", 0.02);
+  expect(AllowedReason::kTested);
 }
 
 TEST_F(TwoBarScene, ProofsOfAnotherRobotAreRefused) {
@@ -317,18 +286,8 @@ TEST_F(TwoBarScene, ProofsOfToolsAreForTheirLinkAlone) {
 // The two ends of a locked joint's range differ by rounding: 0.3, and 0.1 + 0.2.
 TEST(ProvedScene, RangesAsThinAsRoundingAreNoFreeCells) {
   BoxRobot robot{RobotModel("base")};
-  robot.model.add_link("lock", "base",
-                       {.name = "locked",
-                        .type = JointType::kRevolute,
-                        .axis = Eigen::Vector3d::UnitZ(),
-                        .lower = 0.3,
-                        .upper = 0.1 + 0.2});
-  robot.model.add_link("bar", "lock",
-                       {.name = "turn",
-                        .type = JointType::kRevolute,
-                        .axis = Eigen::Vector3d::UnitZ(),
-                        .lower = -2.0,
-                        .upper = 2.0});
+  robot.model.add_link("lock", "base", turning(0.3, 0.1 + 0.2));
+  robot.model.add_link("bar", "lock", turning(-2.0, 2.0));
   robot.add_boxes(0, {{Eigen::Vector3d(0.9, -0.1, -0.1), Eigen::Vector3d(1.1, 0.1, 0.1)}});
   robot.add_boxes(1, {{Eigen::Vector3d(0.0, 0.0, 3.0), Eigen::Vector3d(0.1, 0.1, 3.1)}});
   robot.add_boxes(2, {{Eigen::Vector3d(0.0, -0.02, -0.05), Eigen::Vector3d(2.0, 0.02, 0.05)}});
@@ -338,8 +297,7 @@ TEST(ProvedScene, RangesAsThinAsRoundingAreNoFreeCells) {
   }
   RobotScene scene(robot.model);
   scene.set_link_pairs(pairs);
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
+  Checked checked(scene);
   std::vector<Pose> poses;
   int touching = 0;
   for (int i = -200; i <= 200; ++i) {
@@ -347,7 +305,7 @@ TEST(ProvedScene, RangesAsThinAsRoundingAreNoFreeCells) {
     forward_kinematics(robot.model, q, poses);
     if (!boxes_touch(robot, 0, 2, poses, 1e-6)) continue;
     ++touching;
-    EXPECT_FALSE(checker.check_config(q, scratch)) << q[1];
+    EXPECT_FALSE(checked.free(q)) << q[1];
   }
   EXPECT_GT(touching, 10);
 }
@@ -356,12 +314,10 @@ TEST_F(TwoBarScene, ContactsAreToldBeforeWhatIsProvedFree) {
   RobotScene scene(robot_.model);
   scene.set_link_pairs(pairs_);
   scene.add("wall", SolidSphere{0.1}, Pose::from_translation({0.5, 0.0, 0.0}));
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
+  Checked checked(scene);
   const Configuration aligned{0.0, 0.0};
   for (std::size_t most = 1; most <= 3; ++most) {
-    const auto told =
-        checker.explain(aligned, scratch, {.max_contacts = most, .proved_free = true});
+    const auto told = checked.explain(aligned, {.max_contacts = most, .proved_free = true});
     ASSERT_EQ(told.size(), most);
     for (std::size_t i = 0; i < most; ++i) EXPECT_EQ(told[i].is_proved_free, i == 2);
   }

@@ -9,7 +9,8 @@
 #include "collide/point_cloud.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
-#include "tests/support/random.h"
+#include "tests/robot/check/checked.h"
+#include "tests/robot/robots.h"
 #include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
@@ -25,8 +26,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-using Configuration = std::vector<double>;
-
 std::shared_ptr<const SphereTree> row(std::vector<Sphere> spheres) {
   return std::make_shared<const SphereTree>(build_tree(spheres));
 }
@@ -35,14 +34,8 @@ std::shared_ptr<const SphereTree> row(std::vector<Sphere> spheres) {
 // and a wire of two, whose tip reaches 0.5 ahead of the slide.
 RobotModel welder() {
   RobotModel robot("base");
-  robot.add_link("lift", "base",
-                 {.name = "lift_joint", .type = JointType::kPrismatic, .lower = 0.0, .upper = 1.0});
-  robot.add_link("slide", "lift",
-                 {.name = "slide_joint",
-                  .type = JointType::kPrismatic,
-                  .axis = {1, 0, 0},
-                  .lower = -2.0,
-                  .upper = 2.0});
+  robot.add_link("lift", "base", sliding(0.0, 1.0, "lift_joint", Eigen::Vector3d::UnitZ()));
+  robot.add_link("slide", "lift", sliding(-2.0, 2.0, "slide_joint"));
   robot.attach("base", one_sphere_tree({0, 0, 0}, 0.2));
   robot.attach("slide", row({{{0.1, 0, 0}, 0.05},
                              {{0.2, 0, 0}, 0.05},
@@ -52,32 +45,27 @@ RobotModel welder() {
   return robot;
 }
 
-struct Asked {
-  RobotChecker checker;
-  RobotChecker::Scratch scratch;
-  explicit Asked(const RobotScene& scene) : checker(scene.snapshot()), scratch(checker) {}
-  bool free(double lift, double slide) {
-    return checker.check_config(Configuration{lift, slide}, scratch);
-  }
-};
+bool is_free(const RobotScene& scene, double lift, double slide) {
+  return Checked(scene).free(Configuration{lift, slide});
+}
 
 TEST(RobotScene, ObstaclesComeMoveAndGo) {
   RobotScene scene(welder());
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.0));
-  EXPECT_FALSE(Asked(scene).free(0.0, -0.3)) << "in the base";
+  EXPECT_TRUE(is_free(scene, 1.0, 0.0));
+  EXPECT_FALSE(is_free(scene, 0.0, -0.3)) << "in the base";
   scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
-  Asked before(scene);
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.3));
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+  Checked before(scene);
+  EXPECT_TRUE(is_free(scene, 1.0, 0.3));
+  EXPECT_FALSE(is_free(scene, 1.0, 0.6));
   scene.move("post", Pose::from_translation({0.7, 0, 1}));
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.3));
+  EXPECT_FALSE(is_free(scene, 1.0, 0.3));
   scene.add("board", Primitive(Box{{0.01, 1, 1}}), Pose::from_translation({0.5, 0, 1}));
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.1));
+  EXPECT_FALSE(is_free(scene, 1.0, 0.1));
   EXPECT_EQ(scene.obstacles(), (std::vector<std::string>{"board", "post"}));
   scene.remove("board");
   scene.remove("post");
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
-  EXPECT_FALSE(before.free(1.0, 0.6)) << "a snapshot does not change";
+  EXPECT_TRUE(is_free(scene, 1.0, 0.6));
+  EXPECT_FALSE(before.free(Configuration{1.0, 0.6})) << "a snapshot does not change";
 }
 
 // What was an obstacle moves with the robot, and intersects what the robot alone would pass.
@@ -86,41 +74,38 @@ TEST(RobotScene, AnObstacleIsPickedUp) {
   const auto part = one_sphere_tree({0, 0, 0}, 0.1);
   scene.add("part", part, Pose::from_translation({1, 0, 1}));
   scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({1.3, 0, 1.15}));
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+  EXPECT_FALSE(is_free(scene, 1.0, 0.6));
   scene.remove("part");
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.8));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.6));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.8));
   scene.attach("part", "slide", part, Pose::from_translation({0.4, 0, 0}));
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.8));
-  Asked queried(scene);
-  const auto told = queried.checker.explain(Configuration{1.0, 0.8}, queried.scratch);
+  EXPECT_TRUE(is_free(scene, 1.0, 0.6));
+  EXPECT_FALSE(is_free(scene, 1.0, 0.8));
+  const auto told = Checked(scene).explain(Configuration{1.0, 0.8});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].first.kind, CheckedBody::Kind::kAttached);
   EXPECT_EQ(told[0].first.name, "part");
   EXPECT_EQ(told[0].second.name, "post");
   scene.detach("part");
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.8));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.8));
 }
 
 TEST(RobotScene, PaddingKeepsApart) {
   RobotScene scene(welder());
   scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({1, 0, 1}));
   // The tip of the wire is 0.02 in front of the post.
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.38));
   scene.set_padding("slide", 0.015);
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.38));
   scene.set_padding("slide", "post", 0.01);
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.38)) << "both count";
-  Asked queried(scene);
-  EXPECT_NEAR(queried.checker.clearance(Configuration{1.0, 0.3}, queried.scratch).lower, 0.075,
-              1e-9);
-  const auto told = queried.checker.explain(Configuration{1.0, 0.38}, queried.scratch);
+  EXPECT_FALSE(is_free(scene, 1.0, 0.38)) << "both count";
+  EXPECT_NEAR(Checked(scene).clearance(Configuration{1.0, 0.3}).lower, 0.075, 1e-9);
+  const auto told = Checked(scene).explain(Configuration{1.0, 0.38});
   ASSERT_EQ(told.size(), 1U);
   EXPECT_NEAR(told[0].overlap_depth, 0.005, 1e-9);
   EXPECT_NEAR(told[0].padding, 0.025, 1e-12);
   scene.set_padding("slide", 0.0);
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.38));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.38));
 }
 
 TEST(RobotScene, CloudsAreTrees) {
@@ -128,8 +113,8 @@ TEST(RobotScene, CloudsAreTrees) {
   std::vector<Eigen::Vector3d> points;
   for (int i = -10; i <= 10; ++i) points.emplace_back(1.0, 0.01 * i, 1.0);
   scene.add("cloud", std::make_shared<const SphereTree>(point_cloud_tree(points, 0.005)), Pose());
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.49));
-  EXPECT_FALSE(Asked(scene).free(1.0, 0.5));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.49));
+  EXPECT_FALSE(is_free(scene, 1.0, 0.5));
 }
 
 // The tip of the wire may touch the seam, the rest of the wire and the nozzle may not; nor may the
@@ -141,38 +126,37 @@ TEST(RobotScene, OnlyARegionMayTouch) {
                                         : ObstacleShape(Primitive(SolidSphere{0.02}));
     scene.add("seam", shape, Pose::from_translation({1, 0, 1}));
     scene.add("clamp", shape, Pose::from_translation({1, 0, 0.5}));
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.5));
+    EXPECT_FALSE(is_free(scene, 1.0, 0.5));
     scene.define_region({"slide", "tip"}, Sphere{{0.49, 0, 0}, 0.02});
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.5)) << "a name alone allows nothing";
+    EXPECT_FALSE(is_free(scene, 1.0, 0.5)) << "a name alone allows nothing";
     scene.allow_contact(Region{"slide", "tip"}, "seam");
-    EXPECT_TRUE(Asked(scene).free(1.0, 0.5));
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.6)) << "the wire";
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.7)) << "the nozzle";
-    EXPECT_FALSE(Asked(scene).free(0.5, 0.5)) << "the clamp";
-    Asked queried(scene);
-    const auto told = queried.checker.explain(Configuration{1.0, 0.6}, queried.scratch);
+    EXPECT_TRUE(is_free(scene, 1.0, 0.5));
+    EXPECT_FALSE(is_free(scene, 1.0, 0.6)) << "the wire";
+    EXPECT_FALSE(is_free(scene, 1.0, 0.7)) << "the nozzle";
+    EXPECT_FALSE(is_free(scene, 0.5, 0.5)) << "the clamp";
+    const auto told = Checked(scene).explain(Configuration{1.0, 0.6});
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0].first.name, "slide");
     EXPECT_EQ(told[0].first.sphere, 3) << "as the link's tree numbers it";
     const std::vector<BodySphere> wire = {{0, 3}, {0, 4}};
     scene.define_region({"slide", "tip"}, wire);
-    EXPECT_TRUE(Asked(scene).free(1.0, 0.6)) << "a region that was replaced";
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.7));
+    EXPECT_TRUE(is_free(scene, 1.0, 0.6)) << "a region that was replaced";
+    EXPECT_FALSE(is_free(scene, 1.0, 0.7));
     scene.allow_contact("slide", "seam");
-    EXPECT_TRUE(Asked(scene).free(1.0, 0.7));
+    EXPECT_TRUE(is_free(scene, 1.0, 0.7));
     scene.forbid_contact("slide", "seam");
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.7));
-    EXPECT_TRUE(Asked(scene).free(1.0, 0.6));
+    EXPECT_FALSE(is_free(scene, 1.0, 0.7));
+    EXPECT_TRUE(is_free(scene, 1.0, 0.6));
     scene.forbid_contact(Region{"slide", "tip"}, "seam");
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.6));
+    EXPECT_FALSE(is_free(scene, 1.0, 0.6));
     scene.allow_contact(Region{"slide", "tip"}, "seam");
     scene.remove("seam");
     scene.add("seam", shape, Pose::from_translation({1, 0, 1}));
-    EXPECT_FALSE(Asked(scene).free(1.0, 0.5)) << "what was allowed went with the obstacle";
+    EXPECT_FALSE(is_free(scene, 1.0, 0.5)) << "what was allowed went with the obstacle";
     // All spheres.
     scene.define_region({"slide", "tip"}, Sphere{{0, 0, 0}, 9.0});
     scene.allow_contact(Region{"slide", "tip"}, "seam");
-    EXPECT_TRUE(Asked(scene).free(1.0, 0.7));
+    EXPECT_TRUE(is_free(scene, 1.0, 0.7));
   }
 }
 
@@ -182,12 +166,12 @@ TEST(RobotScene, RegionsOfToolsAndLinks) {
                Pose::from_translation({0, 0, -0.1}));
   // At the lift of 0.1 the gripper is level with the base, which it intersects coming from the
   // left.
-  EXPECT_TRUE(Asked(scene).free(0.1, -1.0));
-  EXPECT_FALSE(Asked(scene).free(0.1, -0.7));
+  EXPECT_TRUE(is_free(scene, 0.1, -1.0));
+  EXPECT_FALSE(is_free(scene, 0.1, -0.7));
   scene.define_region({"gripper", "jaw"}, std::vector<BodySphere>{{0, 1}});
   scene.allow_contact(Region{"gripper", "jaw"}, "base");
-  EXPECT_TRUE(Asked(scene).free(0.1, -0.9));
-  EXPECT_FALSE(Asked(scene).free(0.1, -0.7)) << "the other sphere";
+  EXPECT_TRUE(is_free(scene, 0.1, -0.9));
+  EXPECT_FALSE(is_free(scene, 0.1, -0.7)) << "the other sphere";
   EXPECT_EQ(scene.attached(), std::vector<std::string>{"gripper"});
   scene.detach("gripper");
   EXPECT_TRUE(scene.attached().empty());
@@ -199,16 +183,11 @@ TEST(RobotScene, RegionsOfToolsAndLinks) {
 // An attached tool is tested against the link that its flange's link is joined to.
 TEST(RobotScene, AToolHasNoPartInItsLinksRights) {
   RobotModel robot("base");
-  robot.add_link("wrist", "base",
-                 {.type = JointType::kRevolute, .axis = {0, 1, 0}, .lower = -3.0, .upper = 3.0});
+  robot.add_link("wrist", "base", wheel("", Eigen::Vector3d::UnitY()));
   robot.attach("base", row({{{0, 0, -0.5}, 0.1}, {{0, 0, 0}, 0.1}}));
   robot.attach("wrist", one_sphere_tree({0, 0, 0}, 0.1));
   RobotScene scene(robot);
-  const auto free = [&](double q) {
-    const RobotChecker checker = scene.snapshot();
-    RobotChecker::Scratch scratch(checker);
-    return checker.check_config(Configuration{q}, scratch);
-  };
+  const auto free = [&](double q) { return Checked(scene).free(Configuration{q}); };
   EXPECT_TRUE(free(3.0)) << "adjacent";
   scene.attach("pole", "wrist", one_sphere_tree({0, 0, 0.5}, 0.05));
   EXPECT_TRUE(free(0.0));
@@ -222,11 +201,11 @@ TEST(RobotScene, AToolHasNoPartInItsLinksRights) {
 TEST(RobotScene, EdgesOfAllowedPairs) {
   RobotModel robot = welder();
   RobotScene scene(robot);
-  EXPECT_FALSE(Asked(scene).free(0.0, -0.3));
+  EXPECT_FALSE(is_free(scene, 0.0, -0.3));
   AllowedCollisions allowed = scene.allowed_collisions();
   allowed.allow("base", "slide");
   scene.set_allowed_collisions(allowed);
-  EXPECT_TRUE(Asked(scene).free(0.0, -0.3));
+  EXPECT_TRUE(is_free(scene, 0.0, -0.3));
   EXPECT_THROW(scene.set_allowed_collisions(AllowedCollisions(RobotModel("other"))), Error);
 }
 
@@ -275,7 +254,7 @@ TEST(RobotScene, RefusesBadEdits) {
   EXPECT_THROW(scene.define_region({"slide", "tip"}, Sphere{{0, 0, 0}, kNan}), Error);
   EXPECT_EQ(scene.obstacles(), std::vector<std::string>{"post"});
   EXPECT_EQ(scene.attached(), std::vector<std::string>{"tool"});
-  EXPECT_TRUE(Asked(scene).free(1.0, 0.0));
+  EXPECT_TRUE(is_free(scene, 1.0, 0.0));
   scene.add("far", one_sphere_tree({1e15, 0, 0}, 1.0), Pose::from_translation({1e15, 0, 0}));
   EXPECT_THROW((void)scene.snapshot(), Error);
 }
@@ -283,10 +262,13 @@ TEST(RobotScene, RefusesBadEdits) {
 TEST(RobotScene, RefusesBadConfigurations) {
   RobotScene scene(welder());
   scene.add("post", one_sphere_tree({0, 0, 0}, 0.1), Pose::from_translation({5, 0, 0}));
+  const Configuration good = {1.0, 0.0};
+  const Configuration touching = {0.0, -0.3};
   for (const bool enforce : {false, true}) {
-    const RobotChecker checker = scene.snapshot({.enforce_limits = enforce});
-    RobotChecker::Scratch scratch(checker);
-    const Configuration good = {1.0, 0.0};
+    Checked checked(scene, {.enforce_limits = enforce});
+    const RobotChecker& checker = checked.checker;
+    std::vector<RobotChecker::Scratch> two;
+    for (int i = 0; i < 2; ++i) two.emplace_back(checker);
     std::vector<std::uint8_t> answers(1);
     for (const Configuration& bad : {Configuration{},
                                      {1.0},
@@ -294,23 +276,30 @@ TEST(RobotScene, RefusesBadConfigurations) {
                                      {kNan, 0.0},
                                      {0.0, kInfinity},
                                      {-kInfinity, 0.0}}) {
-      EXPECT_THROW((void)checker.check_config(bad, scratch), Error);
-      EXPECT_THROW(checker.check_configs(bad, scratch, answers), Error);
-      EXPECT_THROW((void)checker.check_edge(bad, good, scratch), Error);
-      EXPECT_THROW((void)checker.check_edge(good, bad, scratch), Error);
-      EXPECT_THROW((void)checker.measure_edge(good, bad, scratch), Error);
-      EXPECT_THROW((void)checker.clearance(bad, scratch), Error);
-      EXPECT_THROW((void)checker.explain(bad, scratch), Error);
+      EXPECT_THROW((void)checked.free(bad), Error);
+      EXPECT_THROW((void)checked.free(bad, 1), Error);
+      EXPECT_THROW(checker.check_configs(bad, two, answers), Error);
+      EXPECT_THROW((void)checked.edge(bad, good), Error);
+      EXPECT_THROW((void)checked.edge(good, bad), Error);
+      EXPECT_THROW((void)checker.measure_edge(good, bad, checked.scratch), Error);
+      EXPECT_THROW((void)checked.clearance(bad), Error);
+      EXPECT_THROW((void)checker.within(bad, 0.1, checked.scratch), Error);
+      EXPECT_THROW((void)checked.explain(bad), Error);
     }
-    EXPECT_THROW((void)checker.check_edge(good, Configuration{1.0, 101.0}, scratch), Error);
+    EXPECT_THROW((void)checked.edge(good, {1.0, 101.0}), Error);
     for (const double bad : {0.0, -1.0, kNan}) {
-      EXPECT_THROW((void)checker.check_edge(good, good, scratch, {.resolution = bad}), Error);
-      EXPECT_THROW((void)checker.measure_edge(good, good, scratch, bad), Error);
+      EXPECT_THROW((void)checked.edge(good, good, {.resolution = bad}), Error);
+      EXPECT_THROW((void)checked.edge(touching, good, {.resolution = bad}), Error);
+      EXPECT_THROW((void)checker.measure_edge(good, good, checked.scratch, bad), Error);
+      EXPECT_THROW((void)checker.within(good, bad - 1.0, checked.scratch), Error);
     }
+    EXPECT_THROW((void)checked.free(good, 2), Error);
     EXPECT_THROW(checker.check_configs(good, std::span<RobotChecker::Scratch>(), answers), Error);
+    EXPECT_TRUE(checked.free({}, 0).empty());
+    checker.check_configs({}, two, {});
     // A large position is answered all the same.
-    EXPECT_EQ(checker.check_config(Configuration{1.0, 150.0}, scratch), !enforce);
-    EXPECT_EQ(checker.check_config(Configuration{1.5, 0.0}, scratch), !enforce);
+    EXPECT_EQ(checked.free(Configuration{1.0, 150.0}), !enforce);
+    EXPECT_EQ(checked.free(Configuration{1.5, 0.0}), !enforce);
   }
 }
 
@@ -318,8 +307,7 @@ TEST(RobotScene, RefusesBadConfigurations) {
 TEST(RobotScene, AdjacencyIsThatOfItsOwnSpheres) {
   const auto robot = [](bool has_spheres) {
     RobotModel model("base");
-    model.add_link("arm", "base",
-                   {.name = "turn", .type = JointType::kRevolute, .lower = -3.0, .upper = 3.0});
+    model.add_link("arm", "base", turning(-3.0, 3.0));
     model.add_link("tool", "arm", {.parent_from_joint = Pose::from_translation({1, 0, 0})});
     if (!has_spheres) return model;
     model.attach("base", one_sphere_tree({-1, 0, 0}, 0.3));
@@ -334,9 +322,7 @@ TEST(RobotScene, AdjacencyIsThatOfItsOwnSpheres) {
   EXPECT_EQ(scene.allowed_collisions().reason(0, 2), AllowedReason::kTested);
   EXPECT_EQ(scene.allowed_collisions().reason(0, 1), AllowedReason::kAdjacent);
   EXPECT_EQ(scene.allowed_collisions().reason(1, 2), AllowedReason::kRigid);
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
-  EXPECT_FALSE(checker.check_config(Configuration{3.1}, scratch));
+  EXPECT_FALSE(Checked(scene).free(Configuration{3.1}));
   bare.forbid("base", "tool");
   bare.allow("base", "tool");
   scene.set_allowed_collisions(bare);
@@ -348,10 +334,8 @@ TEST(RobotScene, PaddingsAddUpToNoLess) {
   scene.add("board", Primitive(Box{{1, 1, 1}}));
   scene.set_padding("slide", 1.0);
   scene.set_padding("slide", "board", 1e-17);
-  const Asked queried(scene);
-  RobotChecker::Scratch scratch(queried.checker);
   bool is_found = false;
-  for (const CheckedContact& contact : queried.checker.explain(Configuration{0.0, 0.0}, scratch)) {
+  for (const CheckedContact& contact : Checked(scene).explain(Configuration{0.0, 0.0})) {
     if (contact.first.name != "slide" || contact.second.name != "board") continue;
     is_found = true;
     EXPECT_GT(contact.padding, 1.0);
@@ -380,42 +364,40 @@ TEST(RobotScene, RefusesTheScratchOfAnotherSnapshot) {
     EXPECT_THROW((void)checker.check_edges(q, q, old), Error);
     EXPECT_THROW((void)checker.measure_edge(q, q, old[0]), Error);
     EXPECT_THROW((void)checker.clearance(q, old[0]), Error);
+    EXPECT_THROW((void)checker.within(q, 0.1, old[0]), Error);
     EXPECT_THROW((void)checker.explain(q, old[0]), Error);
+    // Also where so few are not shared out, so that only the first scratch is used.
+    std::vector<RobotChecker::Scratch> mixed;
+    mixed.emplace_back(checker);
+    mixed.push_back(std::move(old[0]));
+    EXPECT_THROW(checker.check_configs(q, mixed, answers), Error);
+    old[0] = std::move(mixed[1]);
     before.reset();  // the next may lie where it lay
   }
 }
 
 // Nothing is tested of a robot without spheres, and nothing in an empty scene.
 TEST(RobotScene, EmptyOnesAreFree) {
-  const RobotChecker checker = RobotScene(RobotModel("alone")).snapshot();
-  RobotChecker::Scratch scratch(checker);
-  EXPECT_TRUE(checker.check_config({}, scratch));
-  EXPECT_EQ(checker.check_edge({}, {}, scratch).verdict, Verdict::kFree);
-  EXPECT_EQ(checker.clearance({}, scratch).lower, kInfinity);
-  EXPECT_TRUE(checker.explain({}, scratch).empty());
+  Checked checked{RobotScene(RobotModel("alone"))};
+  EXPECT_TRUE(checked.free({}));
+  EXPECT_EQ(checked.edge({}, {}).verdict, Verdict::kFree);
+  EXPECT_EQ(checked.clearance({}).lower, kInfinity);
+  EXPECT_TRUE(checked.explain({}).empty());
+  RobotScene scene(RobotModel("alone"));
+  EXPECT_THROW((void)scene.snapshot({.meshes = {nullptr}}), Error);
+  scene.add("ball", one_sphere_tree({0, 0, 0}, 1.0));
+  EXPECT_TRUE(Checked(scene).free({}));
 }
 
 // The far end of a mimic rounds by more than the bounds for the usual range allow for.
 TEST(RobotSceneMimics, FarOnesAreMetToTheLastDigits) {
   RobotModel robot("base");
-  robot.add_link("slide", "base",
-                 {.name = "lead",
-                  .type = JointType::kPrismatic,
-                  .axis = {1, 0, 0},
-                  .lower = -1.0,
-                  .upper = 1.0});
-  robot.add_link("a", "slide",
-                 {.name = "far",
-                  .type = JointType::kPrismatic,
-                  .axis = {1, 2, 3},
-                  .lower = -1.0,
-                  .upper = 1.0});
+  robot.add_link("slide", "base", sliding(-1.0, 1.0, "lead"));
+  robot.add_link("a", "slide", sliding(-1.0, 1.0, "far", {1, 2, 3}));
   robot.mimic("far", "lead", 1e8);
-  robot.add_link("b", "a",
-                 {.name = "turn",
-                  .type = JointType::kContinuous,
-                  .parent_from_joint = Pose::from_translation({0.3, 0.1, 0.2}),
-                  .axis = {0.3, 0.5, 0.8}});
+  Joint joint = wheel("turn", {0.3, 0.5, 0.8});
+  joint.parent_from_joint = Pose::from_translation({0.3, 0.1, 0.2});
+  robot.add_link("b", "a", joint);
   robot.attach("a", one_sphere_tree({0.1234, 0.2345, 0.345}, 0.1));
   robot.attach("b", one_sphere_tree({0.3, -0.2, 0.1}, 0.1));
   const Pose root(Eigen::Quaterniond(0.3, 0.5, 0.1, 0.7), {0.1, 0.2, 0.3});
@@ -423,8 +405,7 @@ TEST(RobotSceneMimics, FarOnesAreMetToTheLastDigits) {
   AllowedCollisions allowed(robot);
   allowed.forbid("a", "b");
   scene.set_allowed_collisions(allowed);
-  const RobotChecker checker = scene.snapshot();
-  RobotChecker::Scratch scratch(checker);
+  Checked checked(scene);
   std::vector<Pose> poses;
   const auto touches = [&](double lead, double turn) {
     forward_kinematics(robot, Configuration{lead, turn}, poses, root);
@@ -443,8 +424,8 @@ TEST(RobotSceneMimics, FarOnesAreMetToTheLastDigits) {
         (touches(lead, middle) ? in : out) = middle;
       }
       ++touching;
-      EXPECT_FALSE(checker.check_config(Configuration{lead, in}, scratch)) << lead << ' ' << in;
-      EXPECT_EQ(checker.clearance(Configuration{lead, in}, scratch).lower, 0.0);
+      EXPECT_FALSE(checked.free(Configuration{lead, in})) << lead << ' ' << in;
+      EXPECT_EQ(checked.clearance(Configuration{lead, in}).lower, 0.0);
     }
   }
   EXPECT_GT(touching, 100);

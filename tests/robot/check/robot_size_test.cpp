@@ -2,9 +2,11 @@
 // Robots of very many bodies, as no real one has: refused, or answered in time in proportion to the
 // pairs.
 
-#include "base/error.h"
 #include "robot/check/robot_scene.h"
 #include "spheretree/build.h"
+#include "tests/robot/check/checked.h"
+#include "tests/robot/refusals.h"
+#include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
@@ -28,7 +30,7 @@ RobotModel star(int bodies) {
   const auto tree = one_sphere_tree({0, 0, 0}, 0.1);
   for (int i = 0; i < bodies; ++i) {
     const std::string link = "link_" + std::to_string(i);
-    robot.add_link(link, "base", {.name = link + "_joint", .type = JointType::kContinuous});
+    robot.add_link(link, "base", wheel(link + "_joint"));
     robot.attach(link, tree);
   }
   return robot;
@@ -36,25 +38,18 @@ RobotModel star(int bodies) {
 
 TEST(RobotSize, AllTouchingPairsAreToldOnce) {
   constexpr int kBodies = effort(40, 15);
-  const RobotModel robot = star(kBodies);
-  const RobotChecker checker = RobotScene(robot).snapshot();
-  RobotChecker::Scratch scratch(checker);
+  Checked checked{RobotScene(star(kBodies))};
   const std::vector<double> zero(kBodies);
   std::set<std::pair<std::string, std::string>> told;
-  for (const CheckedContact& contact : checker.explain(zero, scratch)) {
+  for (const CheckedContact& contact : checked.explain(zero)) {
     EXPECT_TRUE(told.insert(std::minmax(contact.first.name, contact.second.name)).second);
   }
   EXPECT_EQ(told.size(), std::size_t{kBodies} * (kBodies - 1) / 2);
-  EXPECT_FALSE(checker.check_config(zero, scratch));
+  EXPECT_FALSE(checked.free(zero));
 }
 
 std::string refusal(const RobotScene& scene) {
-  try {
-    (void)scene.snapshot();
-  } catch (const Error& error) {
-    return error.reason();
-  }
-  return "";
+  return reason_of([&] { (void)scene.snapshot(); });
 }
 
 TEST(RobotSize, TooManyPairsAreRefused) {
@@ -68,8 +63,7 @@ TEST(RobotSize, TooManyJointsBetweenPairsAreRefused) {
   const auto tree = one_sphere_tree({0, 0, 0}, 0.1);
   for (int i = 1; i < 480; ++i) {
     const std::string link = "link_" + std::to_string(i);
-    robot.add_link(link, "link_" + std::to_string(i - 1),
-                   {.name = link + "_joint", .type = JointType::kContinuous});
+    robot.add_link(link, "link_" + std::to_string(i - 1), wheel(link + "_joint"));
     robot.attach(link, tree);
   }
   EXPECT_NE(refusal(RobotScene(robot)).find("too many joints lie between"), std::string::npos);

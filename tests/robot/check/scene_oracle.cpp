@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/robot/check/scene_oracle.h"
 
+#include "collide/meshes/solid_mesh.h"
 #include "robot/model/kinematics.h"
 #include "tests/robot/check/checked_scene.h"
-#include "tests/robot/robots.h"
+#include "tests/robot/solid_oracle.h"
 #include "tests/support/exact/poses.h"
+#include "tests/support/zoo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +33,8 @@ std::vector<std::vector<Sphere>> spheres_of(
   return result;
 }
 
-// Whether a joint moves one link against the other.
+}  // namespace
+
 bool moves_against(const RobotModel& robot, int first, int second) {
   // The link that stands for all that is rigidly joined to it.
   const auto group = [&](int link) {
@@ -43,8 +46,6 @@ bool moves_against(const RobotModel& robot, int first, int second) {
   };
   return group(first) != group(second);
 }
-
-}  // namespace
 
 long double OracleScene::gap_of(const OraclePair& pair,
                                 std::span<const Pose> world_from_link) const {
@@ -175,6 +176,55 @@ RandomScene random_scene(Random& random) {
       std::optional<OraclePair> pair = random_pair(random, scene, oracle, k, i);
       if (pair) oracle.pairs.push_back(*std::move(pair));
     }
+  }
+  return result;
+}
+
+TriangleMesh mesh_of_kind(int kind) {
+  switch (kind) {
+    case 0:
+      return box_mesh(Eigen::Vector3d(-1, -0.5, -0.5), Eigen::Vector3d(1, 0.5, 0.5));
+    case 1:
+      return icosphere(3);
+    case 2:
+      return torus(1.0, 0.3, 24, 12);
+    case 3:
+      return needles(12);
+    case 4:
+      return open_box();
+    case 5:
+      return nested_shells(3);
+    case 6:
+      return with_degenerates(inverted(icosphere(2)));
+    default:
+      return soup(60, 7);
+  }
+}
+
+namespace {
+
+// Of a random kind and size, the largest of which hold the whole robot.
+std::shared_ptr<const SolidMesh> random_solid(Random& random) {
+  TriangleMesh mesh = mesh_of_kind(random.whole(0, kMeshKinds - 1));
+  const double size = random.whole(0, 9) < 2 ? 20.0 : random.between(0.05, 2.0);
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= size;
+  mesh.vertex_error = random.whole(0, 1) == 0 ? 0.0 : random.between(0.0, 0.05);
+  return std::make_shared<const SolidMesh>(mesh);
+}
+
+}  // namespace
+
+RandomScene scene_with_solids(Random& random) {
+  RandomScene result = random_scene(random);
+  for (int i = random.whole(0, 4); i > 0; --i) {
+    const double size = random.whole(0, 9) == 0 ? 100.0 : random.whole(0, 9) == 0 ? 1e-3 : 0.3;
+    const bool is_half_space = random.whole(0, 4) == 0;
+    const Primitive solid = is_half_space ? HalfSpace{} : random_primitive(random, 2.0 * size);
+    result.scene.add("solid_" + std::to_string(i), solid,
+                     random.pose(is_half_space ? 4.0 : 3.0 + size));
+  }
+  for (int i = random.whole(0, 2); i > 0; --i) {
+    result.scene.add("mesh_" + std::to_string(i), random_solid(random), random.pose(3.0));
   }
   return result;
 }

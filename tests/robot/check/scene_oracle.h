@@ -4,13 +4,13 @@
 // Scenes of a robot, with what is tested in them written down a second time: every pair of spheres
 // in extended precision, under the poses of forward_kinematics(). Shares no code with the checker.
 
+#include "geometry/triangle_mesh.h"
 #include "robot/check/robot_scene.h"
 #include "tests/support/random.h"
 
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace spherule::test {
@@ -45,6 +45,9 @@ struct OracleScene {
   long double gap_of(const OraclePair& pair, std::span<const Pose> world_from_link) const;
 };
 
+// Whether a joint moves one link against the other.
+bool moves_against(const RobotModel& robot, int first, int second);
+
 // A random robot with links of random spheres, which stands among random trees, with or without
 // attached objects, padding, regions and intended contacts.
 struct RandomScene {
@@ -52,5 +55,10 @@ struct RandomScene {
   OracleScene oracle;
 };
 RandomScene random_scene(Random& random);
+// The same among solids and meshes of every kind, tiny and huge ones, of which the oracle is told
+// nothing.
+RandomScene scene_with_solids(Random& random);
+constexpr int kMeshKinds = 8;
+TriangleMesh mesh_of_kind(int kind);
 
 }  // namespace spherule::test

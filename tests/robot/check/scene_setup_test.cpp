@@ -2,17 +2,18 @@
 #include "robot/check/scene_setup.h"
 
 #include "base/error.h"
-#include "robot/check/robot_checker.h"
+#include "io/mesh_io.h"
+#include "tests/robot/check/checked.h"
+#include "tests/robot/refusals.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/zoo.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstdlib>
 #include <memory>
-#include <ostream>
 #include <sstream>
 #include <string>
 #include <variant>
@@ -34,20 +35,9 @@ bool contains(const Sphere& sphere, const Rational (&point)[3], double radius) {
   return room >= 0 && squared <= room * room;
 }
 
-// A closed box as the next eight corners of an OBJ file; `first` is the number of the first.
-void put_box(const Eigen::AlignedBox3d& box, int first, std::ostream& obj) {
-  for (int corner = 0; corner < 8; ++corner) {
-    obj << 'v';
-    for (int axis = 0; axis < 3; ++axis) {
-      obj << ' ' << ((corner >> axis & 1) != 0 ? box.max() : box.min())[axis];
-    }
-    obj << '\n';
-  }
-  for (const auto& [a, b, c, d] : std::vector<std::array<int, 4>>{
-           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-    obj << "f " << first + a << ' ' << first + b << ' ' << first + c << '\n';
-    obj << "f " << first + a << ' ' << first + c << ' ' << first + d << '\n';
-  }
+MeshFile write_mesh(const TempDir& folder, const TriangleMesh& mesh) {
+  write_stl(mesh, folder.path() / "mesh.stl");
+  return {.path = folder.path() / "mesh.stl"};
 }
 
 // Two cubes with a gap of 0.2 between them, in which a pin stands: D of the robot fills the gap, D
@@ -55,25 +45,20 @@ void put_box(const Eigen::AlignedBox3d& box, int first, std::ostream& obj) {
 TEST(PrepareScene, AttachedMeshesHaveTheirOwnErrorAndD) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   const TempDir folder;
-  std::ostringstream obj;
-  put_box({Eigen::Vector3d(-0.2, -0.05, -0.05), Eigen::Vector3d(-0.1, 0.05, 0.05)}, 1, obj);
-  put_box({Eigen::Vector3d(0.1, -0.05, -0.05), Eigen::Vector3d(0.2, 0.05, 0.05)}, 9, obj);
+  const TriangleMesh fork = joined(box_mesh({-0.2, -0.05, -0.05}, {-0.1, 0.05, 0.05}),
+                                   box_mesh({0.1, -0.05, -0.05}, {0.2, 0.05, 0.05}));
   RobotModel robot("base");
   robot.add_link("hand", "base",
                  {.name = "slide", .type = JointType::kPrismatic, .lower = -1.0, .upper = 1.0});
   SceneDescription scene;
   scene.obstacles.push_back({.name = "pin", .shape = Primitive(SolidSphere{.radius = 0.01})});
-  scene.attached.push_back({.name = "fork",
-                            .link = "hand",
-                            .shape = MeshFile{.path = folder.write("fork.obj", obj.str())}});
+  scene.attached.push_back({.name = "fork", .link = "hand", .shape = write_mesh(folder, fork)});
   const RobotCoverOptions cover{.max_error = 0.05,
                                 .min_external_diameter = 1.0,
                                 .links = {{"hand", {.max_error = 0.01}}},
                                 .effort = 0};
   const auto is_free = [&] {
-    const RobotChecker checker = prepare_scene(robot, scene, cover).scene.snapshot();
-    RobotChecker::Scratch scratch(checker);
-    return checker.check_config(std::vector<double>{0.0}, scratch);
+    return Checked(prepare_scene(robot, scene, cover).scene).free(Configuration{0.0});
   };
   EXPECT_FALSE(is_free());
   scene.attached.front().max_error = 0.03;
@@ -98,9 +83,7 @@ TEST(PrepareScene, SpheresInAnotherUnitAreRefused) {
 
 TEST(PrepareScene, SharesWhatIsNamedAgain) {
   const TempDir folder;
-  std::ostringstream obj;
-  put_box({Eigen::Vector3d(-1.0, -1.0, -1.0), Eigen::Vector3d(1.0, 1.0, 1.0)}, 1, obj);
-  const MeshFile box{.path = folder.write("box.obj", obj.str())};
+  const MeshFile box = write_mesh(folder, cube_mesh());
   const MeshFile stretched{.path = box.path, .scale = {2.0, 1.0, 1.0}};
   const PointsSource scan{.path = folder.write("scan.xyz", "1 1 1\n"), .radius = 0.01};
   PointsSource thicker = scan;
@@ -145,12 +128,8 @@ TEST(PrepareScene, RefusesALargeShapeInManyPlaces) {
     other.radius = 0.01 + i;
     scene.obstacles.push_back({.name = std::to_string(i), .shape = other});
   }
-  try {
-    prepare_scene(RobotModel("base"), scene, {});
-    FAIL() << "not refused";
-  } catch (const Error& error) {
-    EXPECT_NE(error.reason().find("that the scene repeats"), std::string::npos) << error.what();
-  }
+  const std::string reason = reason_of([&] { prepare_scene(RobotModel("base"), scene, {}); });
+  EXPECT_NE(reason.find("that the scene repeats"), std::string::npos) << reason;
 }
 
 // Decimals are rounded when they are read and again when they are scaled: by less than one part in

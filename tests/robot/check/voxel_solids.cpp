@@ -2,12 +2,11 @@
 #include "tests/robot/check/voxel_solids.h"
 
 #include "spheretree/build.h"
-
-#include <fcl/narrowphase/collision.h>
-#include <fcl/narrowphase/distance.h>
+#include "tests/robot/solid_oracle.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -41,13 +40,6 @@ std::vector<Vector3i> random_row(Random& random, int count) {
   return cells;
 }
 
-fcl::Transform3d transform_of(const Pose& pose) {
-  fcl::Transform3d result = fcl::Transform3d::Identity();
-  result.linear() = pose.matrix();
-  result.translation() = pose.translation();
-  return result;
-}
-
 }  // namespace
 
 VoxelSolid::VoxelSolid(Random& random, int cells, double cell_size) : half_(0.5 * cell_size) {
@@ -61,13 +53,7 @@ VoxelSolid::VoxelSolid(Random& random, int cells, double cell_size) : half_(0.5 
   for (const Vector3d& vertex : mesh_.vertices) reach_ = std::max(reach_, vertex.norm());
   covered_ = std::make_shared<const CoveredMesh>(
       mesh_, std::make_shared<const SphereTree>(build_tree(spheres)));
-  model_ = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  model_->beginModel();
-  for (const Vector3i& t : mesh_.triangles) {
-    const auto corner = [&](int k) { return mesh_.vertices[static_cast<std::size_t>(t[k])]; };
-    model_->addTriangle(corner(0), corner(1), corner(2));
-  }
-  model_->endModel();
+  surface_ = std::make_shared<const FclSolid>(mesh_);
 }
 
 // Two triangles for every face between a cell and what is no cell, turned outward.
@@ -114,25 +100,33 @@ double VoxelSolid::lowest(const Pose& world_from_solid) const {
   return least;
 }
 
-// Solids whose surfaces are apart are so, or one holds all cells of the other.
+double VoxelSolid::distance_from(const Pose& world_from_solid, const Primitive& other,
+                                 double radius, const Pose& world_from_other) const {
+  const Pose other_from_solid = world_from_other.inverse() * world_from_solid;
+  const Primitive cell = Box{Vector3d::Constant(2.0 * half_)};
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vector3d& center : centers_) {
+    const Pose other_from_cell = other_from_solid * Pose::from_translation(center);
+    // Not below, for what is further than the nearest so far.
+    const double apart = other_from_cell.translation().norm() - radius - std::sqrt(3.0) * half_;
+    least = std::min(least, apart > std::min(least, kFarApart)
+                                ? apart
+                                : test::distance_between(cell, other_from_cell, other, Pose()));
+  }
+  return least;
+}
+
 double distance_between(const VoxelSolid& a, const Pose& world_from_a, const VoxelSolid& b,
                         const Pose& world_from_b) {
   const double apart = (world_from_a.translation() - world_from_b.translation()).norm();
   if (apart - a.reach_ - b.reach_ > kFarApart) return apart - a.reach_ - b.reach_;
-  const Pose a_from_world = world_from_a.inverse(), b_from_world = world_from_b.inverse();
-  if (a.distance_from(a_from_world * (world_from_b * b.centers_.front())) == 0.0 ||
-      b.distance_from(b_from_world * (world_from_a * a.centers_.front())) == 0.0) {
+  const Pose b_from_a = world_from_b.inverse() * world_from_a;
+  if (b.distance_from(b_from_a * a.centers_.front()) == 0.0 ||
+      a.distance_from(b_from_a.inverse() * b.centers_.front()) == 0.0 ||
+      touch(*a.surface_, world_from_a, *b.surface_, world_from_b)) {
     return 0.0;
   }
-  const fcl::Transform3d of_a = transform_of(world_from_a), of_b = transform_of(world_from_b);
-  fcl::CollisionResultd contacts;
-  if (fcl::collide(a.model_.get(), of_a, b.model_.get(), of_b, fcl::CollisionRequestd(1, false),
-                   contacts) > 0) {
-    return 0.0;
-  }
-  fcl::DistanceResultd distance;
-  fcl::distance(a.model_.get(), of_a, b.model_.get(), of_b, fcl::DistanceRequestd(), distance);
-  return std::max(distance.min_distance, 0.0);
+  return surface_distance(*a.surface_, world_from_a, *b.surface_, world_from_b);
 }
 
 }  // namespace spherule::test

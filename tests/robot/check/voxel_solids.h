@@ -5,12 +5,12 @@
 // point are exact by the cells alone. FCL tells how far the surfaces of two are apart.
 
 #include "collide/meshes/mesh_contact.h"
+#include "collide/solids/primitive.h"
 #include "geometry/pose.h"
+#include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Core>
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/math/bv/OBBRSS.h>
 
 #include <memory>
 #include <vector>
@@ -30,6 +30,9 @@ class VoxelSolid {
   double distance_from(const Eigen::Vector3d& p) const;
   // The least height of a point of the placed solid.
   double lowest(const Pose& world_from_solid) const;
+  // How far a primitive of this radius about its origin is away, as distance_between() of two.
+  double distance_from(const Pose& world_from_solid, const Primitive& other, double radius,
+                       const Pose& world_from_other) const;
 
  private:
   friend double distance_between(const VoxelSolid& a, const Pose& world_from_a, const VoxelSolid& b,
@@ -41,11 +44,11 @@ class VoxelSolid {
   std::vector<Eigen::Vector3d> centers_;
   TriangleMesh mesh_;
   std::shared_ptr<const CoveredMesh> covered_;
-  std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> model_;
+  std::shared_ptr<const FclSolid> surface_;
 };
 
-// By FCL and the centres of cells; 0 where the two have a point in common. Where it is above
-// kFarApart, a lower bound that is above that, too.
+// 0 where the two have a point in common. Where it is above kFarApart, a lower bound that is above
+// that, too.
 inline constexpr double kFarApart = 0.1;
 double distance_between(const VoxelSolid& a, const Pose& world_from_a, const VoxelSolid& b,
                         const Pose& world_from_b);

@@ -8,7 +8,9 @@
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
 #include "tests/robot/box_robots.h"
+#include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -47,9 +49,7 @@ class TwoCubes : public testing::Test {
   static constexpr double kUpper = 3.5;
 
   TwoCubes() {
-    Joint slide{.name = "slide", .type = JointType::kPrismatic, .lower = kLower, .upper = kUpper};
-    slide.axis = Vector3d::UnitX();
-    robot_.model.add_link("slider", "post", slide);
+    robot_.model.add_link("slider", "post", sliding(kLower, kUpper));
     robot_.add_boxes(0, {AlignedBox3d(Vector3d(-1, 0, 0), Vector3d(0, 1, 1))});
     robot_.add_boxes(1, {AlignedBox3d(Vector3d(0, 0, 0), Vector3d(1, 1, 1))});
     cover_boxes(robot_);
@@ -103,9 +103,7 @@ TEST_F(TwoCubes, ProofsSpareTests) {
 
 TEST_F(TwoCubes, WhatIsProvedWithinLimitsMayTouchBeyondThem) {
   BoxRobot robot{RobotModel("post")};
-  Joint slide{.name = "slide", .type = JointType::kPrismatic, .lower = 0.1, .upper = 3.5};
-  slide.axis = Vector3d::UnitX();
-  robot.model.add_link("slider", "post", slide);
+  robot.model.add_link("slider", "post", sliding(0.1, 3.5));
   for (const int link : {0, 1}) robot.add_boxes(link, robot_.boxes[static_cast<std::size_t>(link)]);
   cover_boxes(robot);
   AllowedCollisions allowed(robot.model);
@@ -131,8 +129,8 @@ TEST_F(TwoCubes, PairsThatAlwaysTouchAreNamedAndLeftOut) {
   // A sleeve around the slider's whole way.
   robot_.model.add_link("sleeve", "post", {.name = "weld", .type = JointType::kFixed});
   robot_.add_boxes(2, {AlignedBox3d(Vector3d(-9, 0, 0), Vector3d(9, 1, 1))});
-  robot_.model.attach("sleeve", std::make_shared<const SphereTree>(
-                                    build_tree(std::vector{sphere_around(robot_.boxes[2][0])})));
+  const Sphere around = sphere_around(robot_.boxes[2][0]);
+  robot_.model.attach("sleeve", one_sphere_tree(around.center, around.radius));
   AllowedCollisions allowed(robot_.model);
   allowed.forbid("post", "slider");
   allowed.forbid("sleeve", "slider");

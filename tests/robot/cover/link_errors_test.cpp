@@ -7,11 +7,11 @@
 #include "robot/model/link_spheres.h"
 #include "spheretree/build.h"
 #include "tests/robot/box_robots.h"
+#include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -53,13 +53,10 @@ class ThreeLinks : public testing::Test {
       robot_.add_boxes(link, {AlignedBox3d(low, high)});
     };
     robot_.add_boxes(0, {AlignedBox3d(Vector3d(0.9, -0.1, -0.5), Vector3d(1.1, 0.1, 0.5))});
-    Joint turn{.name = "turn", .type = JointType::kRevolute, .lower = -0.6, .upper = 0.6};
-    add("bar", "post", turn, {0.0, -0.05, -0.05}, {0.6, 0.05, 0.05});
-    Joint slide{.name = "slide", .type = JointType::kPrismatic, .lower = 0.0, .upper = 0.5};
-    slide.axis = Vector3d::UnitX();
-    add("hand", "bar", slide, {0.3, -0.1, -0.1}, {0.5, 0.1, 0.1});
-    Joint mast{.name = "mast_joint", .type = JointType::kRevolute, .lower = -1.0, .upper = 1.0};
-    mast.parent_from_joint = Pose(Eigen::Quaterniond::Identity(), Vector3d(-5.0, 0.0, 0.0));
+    add("bar", "post", turning(-0.6, 0.6), {0.0, -0.05, -0.05}, {0.6, 0.05, 0.05});
+    add("hand", "bar", sliding(0.0, 0.5), {0.3, -0.1, -0.1}, {0.5, 0.1, 0.1});
+    Joint mast = turning(-1.0, 1.0);
+    mast.parent_from_joint = Pose::from_translation({-5.0, 0.0, 0.0});
     add("mast", "post", mast, {-0.1, -0.1, 0.0}, {0.1, 0.1, 1.0});
     allowed_ = std::make_unique<AllowedCollisions>(with_errors({0.1, 0.1, 0.1, 0.1}));
     cover_ = [this](std::span<const LinkError> errors) { return cover(errors, 1.0); };
@@ -73,6 +70,10 @@ class ThreeLinks : public testing::Test {
                                  factor * error.max_error));
     }
     return result;
+  }
+
+  std::size_t spheres_of(int link, double max_error) const {
+    return cover_box(robot_.boxes[static_cast<std::size_t>(link)][0], max_error)->spheres().size();
   }
 
   RobotModel with_errors(const std::vector<double>& errors) const {
@@ -118,6 +119,17 @@ TEST_F(ThreeLinks, ReachesTheGoalWithFewerSpheresThanOneErrorForAll) {
   ASSERT_EQ(choice.links.size(), 4U);
   EXPECT_EQ(choice.links[3].max_error, 0.2);  // the mast does not matter
   EXPECT_LT(choice.links[0].max_error, 0.1);
+  std::size_t spheres = 0;
+  for (const ChosenError& link : choice.links) {
+    EXPECT_EQ(link.spheres, spheres_of(link.link, link.max_error));
+    spheres += link.spheres;
+  }
+  EXPECT_EQ(choice.spheres, spheres);
+  EXPECT_EQ(choice.verified.postures, LinkErrorChoice::kVerification * 4000);
+  const FalseAlarms coarsest = measure({0.2, 0.2, 0.2, 0.2}, {.postures = 4000, .seed = 3});
+  EXPECT_EQ(choice.coarsest.refused, coarsest.refused);
+  EXPECT_EQ(choice.coarsest.free, coarsest.free);
+  EXPECT_LT(choice.coarsest_spheres, choice.spheres);
 
   // Postures that nothing was chosen or verified by.
   const FalseAlarms fresh = measure(errors_of(choice), {.postures = 20000, .seed = 99});
@@ -131,30 +143,9 @@ TEST_F(ThreeLinks, ReachesTheGoalWithFewerSpheresThanOneErrorForAll) {
     const std::vector<double> errors(4, error);
     if (measure(errors, {.postures = 20000, .seed = 99}).refused_share().share() > 0.95 * goal)
       continue;
-    for (std::size_t link = 0; link < 4; ++link) {
-      uniform += cover_box(robot_.boxes[link][0], error)->spheres().size();
-    }
+    for (int link = 0; link < 4; ++link) uniform += spheres_of(link, error);
   }
   EXPECT_LT(choice.spheres, uniform);
-}
-
-TEST_F(ThreeLinks, FiguresAreThoseOfTheCovers) {
-  const LinkErrorChoice choice = choose(options(0.05));
-  std::size_t spheres = 0;
-  for (const ChosenError& link : choice.links) {
-    const std::size_t count =
-        cover_box(robot_.boxes[static_cast<std::size_t>(link.link)][0], link.max_error)
-            ->spheres()
-            .size();
-    EXPECT_EQ(link.spheres, count);
-    spheres += count;
-  }
-  EXPECT_EQ(choice.spheres, spheres);
-  EXPECT_EQ(choice.verified.postures, LinkErrorChoice::kVerification * 4000);
-  const FalseAlarms coarsest = measure({0.2, 0.2, 0.2, 0.2}, {.postures = 4000, .seed = 3});
-  EXPECT_EQ(choice.coarsest.refused, coarsest.refused);
-  EXPECT_EQ(choice.coarsest.free, coarsest.free);
-  EXPECT_LT(choice.coarsest_spheres, choice.spheres);
 }
 
 TEST_F(ThreeLinks, CoarsestCoversDoForAWeakGoal) {
@@ -228,8 +219,7 @@ TEST_F(ThreeLinks, FinalCoversAreVerified) {
   std::vector<double> errors = errors_of(choice);
   for (std::size_t link = 0; link < 4; ++link) {
     errors[link] *= 1.1;
-    EXPECT_EQ(choice.links[link].spheres,
-              cover_box(robot_.boxes[link][0], errors[link])->spheres().size());
+    EXPECT_EQ(choice.links[link].spheres, spheres_of(static_cast<int>(link), errors[link]));
   }
   const FalseAlarms fresh = measure(errors, {.postures = 20000, .seed = 99});
   EXPECT_NEAR(choice.verified.refused_share().share(), fresh.refused_share().share(), 0.005);
@@ -259,13 +249,10 @@ namespace {
 // Two blocks that slide towards each other on two rails, 0.02 m apart at least.
 RobotDescription two_blocks() {
   RobotDescription robot{.name = "rails", .model = RobotModel("left"), .links = {}};
-  Joint slide{.name = "slide", .type = JointType::kPrismatic, .lower = 0.0, .upper = 0.2};
-  slide.axis = Eigen::Vector3d::UnitX();
-  slide.parent_from_joint = Pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.22, 0, 0));
+  Joint slide = sliding(0.0, 0.2);
+  slide.parent_from_joint = Pose::from_translation({0.22, 0, 0});
   robot.model.add_link("rail", "left", slide);
-  slide.name = "slide_2";
-  slide.parent_from_joint = Pose();
-  robot.model.add_link("right", "rail", slide);
+  robot.model.add_link("right", "rail", sliding(0.0, 0.2));
   for (const char* name : {"left", "rail", "right"}) robot.links.push_back({.name = name});
   for (const std::size_t link : {0U, 2U}) {
     robot.links[link].collision.push_back(

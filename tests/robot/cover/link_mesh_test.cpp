@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/link_mesh.h"
 
-#include "base/error.h"
 #include "geometry/mesh_report.h"
 #include "io/mesh_io.h"
 #include "robot/cover/audit_robot.h"
@@ -9,7 +8,8 @@
 #include "robot/cover/primitive_mesh.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/urdf.h"
-#include "tests/robot/cover/cover_oracle.h"
+#include "tests/robot/refusals.h"
+#include "tests/robot/solid_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/random.h"
@@ -214,35 +214,28 @@ TEST(LinkMesh, JoinsAllShapesOfTheGeometryAskedFor) {
   EXPECT_NEAR(report.box.min().x(), -0.5, 1e-9);
 }
 
-std::string refusal(const LinkDescription& link, const LinkMeshOptions& options = {}) {
-  try {
-    link_mesh(link, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(LinkMesh, RefusesWhatHasNoMesh) {
   const TempDir folder;
   write_stl(*link_mesh(link_of(Box{{1, 2, 3}})), folder.path() / "box.stl");
-  const auto has = [](const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
+  const auto expect = [](const LinkDescription& link, const std::string& part,
+                         const LinkMeshOptions& options = {}) {
+    const std::string text = message_of([&] { link_mesh(link, options); });
+    EXPECT_NE(text.find(part), std::string::npos) << text;
   };
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(has(refusal(link_of(HalfSpace{})), "link 'arm'"));
-  EXPECT_TRUE(has(refusal(link_of(HalfSpace{})), "half-space"));
-  EXPECT_TRUE(has(refusal(link_of(SolidSphere{-1})), "link 'arm'"));
-  EXPECT_TRUE(has(refusal(link_of(Box{{1, 0, 1}})), "link 'arm'"));
-  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = 0}), "chord error"));
-  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = -kInfinity}), "chord error"));
-  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = std::nan("")}), "chord error"));
-  EXPECT_TRUE(has(refusal(link_of(SolidSphere{1}), {.chord_error = 1e-9}), "too many triangles"));
+  expect(link_of(HalfSpace{}), "link 'arm'");
+  expect(link_of(HalfSpace{}), "half-space");
+  expect(link_of(SolidSphere{-1}), "link 'arm'");
+  expect(link_of(Box{{1, 0, 1}}), "link 'arm'");
+  for (const double bad : {0.0, -kInfinity, std::nan("")}) {
+    expect(link_of(SolidSphere{1}), "chord error", {.chord_error = bad});
+  }
+  expect(link_of(SolidSphere{1}), "too many triangles", {.chord_error = 1e-9});
   const std::filesystem::path file = folder.path() / "box.stl";
-  EXPECT_TRUE(has(refusal(link_of(file, {1, 0, 1})), "box.stl must be finite and not 0"));
-  EXPECT_TRUE(has(refusal(link_of(file, {1, kInfinity, 1})), "must be finite"));
-  EXPECT_TRUE(has(refusal(link_of(file, {1, 1e16, 1})), "box.stl as scaled: vertex"));
-  EXPECT_TRUE(has(refusal(link_of(folder.path() / "none.stl", {1, 1, 1})), "no such file"));
+  expect(link_of(file, {1, 0, 1}), "box.stl must be finite and not 0");
+  expect(link_of(file, {1, kInfinity, 1}), "must be finite");
+  expect(link_of(file, {1, 1e16, 1}), "box.stl as scaled: vertex");
+  expect(link_of(folder.path() / "none.stl", {1, 1, 1}), "no such file");
 }
 
 }  // namespace

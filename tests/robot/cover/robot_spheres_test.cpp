@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/cover/robot_spheres.h"
 
-#include "base/error.h"
 #include "io/mesh_io.h"
-#include "tests/robot/cover/cover_oracle.h"
+#include "tests/robot/refusals.h"
+#include "tests/robot/solid_oracle.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
@@ -56,10 +56,24 @@ Wide sampled_protrusion(const LinkCover& cover, const LinkDescription& link, Ran
   return largest;
 }
 
-// The same robot with boxes for its shapes: few triangles are certified quickly.
-RobotDescription boxes_of(RobotDescription robot) {
-  for (LinkDescription& link : robot.links) {
-    for (LinkShape& shape : link.collision) shape.geometry = Box{{0.1, 0.15, 0.2}};
+// A chain of three links, of which the first and the last have one or two shapes: boxes, few
+// triangles of which are certified quickly, or any.
+RobotDescription random_chain(Random& random, bool of_boxes = true) {
+  RobotDescription robot{.name = "chain", .model = RobotModel("link0")};
+  for (int i = 0; i < 3; ++i) {
+    LinkDescription link{.name = "link" + std::to_string(i)};
+    if (i > 0) {
+      robot.model.add_link(link.name, "link" + std::to_string(i - 1),
+                           {.type = JointType::kRevolute, .lower = -1, .upper = 1});
+    }
+    for (std::size_t shapes = i == 1 ? 0 : 1 + random.index(2); shapes > 0; --shapes) {
+      const Pose pose = random_pose(random, 0.1);
+      const Primitive shape = random_primitive(random, 0.2);
+      link.collision.push_back({.name = "",
+                                .link_from_shape = pose,
+                                .geometry = of_boxes ? Box{{0.1, 0.15, 0.2}} : shape});
+    }
+    robot.links.push_back(link);
   }
   return robot;
 }
@@ -71,8 +85,7 @@ RobotCoverOptions quick(double max_error) {
 TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
   Random random(11);
   for (int i = 0; i < effort(2, 1); ++i) {
-    RobotDescription robot = random_robot(random, 3);
-    if (kSanitized) robot = boxes_of(robot);
+    const RobotDescription robot = random_chain(random, kSanitized);
     RobotCoverOptions options = quick(0.06);
     options.padding = i % 2 == 0 ? 0.005 : 0.0;
     const RobotCover cover = cover_robot(robot, options);
@@ -120,7 +133,7 @@ TEST(RobotSpheres, ASphereIsOneSphere) {
 TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   Random random(12);
-  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  const RobotDescription robot = random_chain(random);
   RobotCoverOptions options = quick(0.05);
   options.effort = 1;
   options.threads = 1;
@@ -137,7 +150,7 @@ TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {
 TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
   if (kSanitized) GTEST_SKIP() << kLeftToRelease;
   Random random(13);
-  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  const RobotDescription robot = random_chain(random);
   RobotCoverOptions options = quick(0.05);
   const RobotCover plain = cover_robot(robot, options);
   EXPECT_EQ(plain.links[0].fit->options.min_external_diameter, 0.2);
@@ -158,7 +171,7 @@ TEST(RobotSpheres, OptionsOfALinkAreForThatLink) {
 // The robot's D counts where the link has none of its own, whatever its E.
 TEST(RobotSpheres, ZonesOfALinkAreForThatLink) {
   Random random(13);
-  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  const RobotDescription robot = random_chain(random);
   RobotCoverOptions options = quick(0.05);
   options.min_external_diameter = 0.15;
   options.links["link2"] = {.max_error = 0.025, .padding = 0.004};
@@ -197,7 +210,7 @@ TEST(RobotSpheres, WarnOfAnOpenMeshAndCoverIt) {
 
 TEST(RobotSpheres, ProgressGrowsAndNamesLinks) {
   Random random(15);
-  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  const RobotDescription robot = random_chain(random);
   RobotCoverOptions options = quick(0.06);
   std::mutex mutex;
   std::vector<double> shares;
@@ -252,7 +265,7 @@ TEST(RobotSpheres, DoubtsALargeLinkBeforeItIsCovered) {
 
 TEST(RobotSpheres, NamesTheLinksWhoseProofFailed) {
   Random random(16);
-  const RobotDescription robot = boxes_of(random_robot(random, 3));
+  const RobotDescription robot = random_chain(random);
   RobotCover cover = cover_robot(robot, quick(0.06));
   EXPECT_TRUE(links_not_proved(cover).empty());
   cover.links[2].fit->certificate.covered = false;
@@ -296,20 +309,11 @@ TEST(RobotSpheres, NeighboursAreNotCheckedAgainstEachOther) {
                                              "camera lens", "wrist left", "wrist right"}));
 }
 
-std::string refusal(const RobotDescription& robot, const RobotCoverOptions& options) {
-  try {
-    cover_robot(robot, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(RobotSpheres, RefusesBadOptionsAndNamesThem) {
   Random random(17);
-  RobotDescription robot = random_robot(random, 3);
+  RobotDescription robot = random_chain(random);
   const auto expect = [&](const RobotCoverOptions& options, const std::string& reason) {
-    const std::string text = refusal(robot, options);
+    const std::string text = message_of([&] { cover_robot(robot, options); });
     EXPECT_NE(text.find(reason), std::string::npos) << text;
   };
   const double nan = std::nan("");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/robot/files/random_urdf.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <utility>
 #include <vector>

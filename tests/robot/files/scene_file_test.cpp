@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "robot/files/point_cloud_file.h"
+#include "tests/robot/refusals.h"
 #include "tests/support/temp_dir.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -14,6 +15,8 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -32,19 +35,8 @@ class SceneFileTest : public testing::Test {
   static std::string obstacle(const std::string& keys) {
     return scene(R"("obstacles": [{"name": "table", )" + keys + "}]");
   }
-  std::string fault(const std::string& text) const {
-    const std::filesystem::path path = folder_.write("cell.json", text);
-    try {
-      read_scene(path);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.subject(), path.string());
-      return error.reason();
-    }
-    return "none";
-  }
-  void expect_fault(const std::string& text, const std::string& part) const {
-    const std::string found = fault(text);
-    EXPECT_NE(found.find(part), found.npos) << "of " << text << ": " << found;
+  static void expect_faults(const std::vector<BadText>& texts) {
+    expect_refusals(texts, [](const std::filesystem::path& file) { read_scene(file); });
   }
 
   const TempDir folder_;
@@ -134,70 +126,91 @@ TEST_F(SceneFileTest, RollPitchYawIsThatOfUrdf) {
 }
 
 TEST_F(SceneFileTest, RefusesOtherFiles) {
-  expect_fault("", "is not JSON");
-  expect_fault("{\n\n 1}",
-               "line 3, column 2: is not JSON: unexpected number literal; expected string literal");
-  expect_fault("[]", "is not an object");
-  expect_fault("{}", "is no scene");
-  expect_fault(R"({"format": "spherule-spheres", "version": 1})", "is no scene");
-  expect_fault(R"({"format": "spherule-scene"})", "'version' is missing");
-  expect_fault(R"({"format": "spherule-scene", "version": 2})", "version: is not 1");
-  expect_fault(scene(R"("obstacle": [])"), "the key 'obstacle' is not known here");
-  expect_fault(scene(R"("obstacles": [], "obstacles": [])"), "\"obstacles\" appears twice");
-  expect_fault(scene(R"("obstacles": {})"), "obstacles: is not a list");
   std::string keys;
   for (int i = 0; i <= 1 << 13; ++i) keys += "\"k" + std::to_string(i) + "\": 0, ";
-  expect_fault(scene(R"("robot": {)" + keys + R"("k": 0})"), "too many keys");
+  expect_faults({
+      {"", {"is not JSON"}},
+      {"{\n\n 1}",
+       {"line 3, column 2: is not JSON: unexpected number literal; expected string literal"}},
+      {"[]", {"is not an object"}},
+      {"{}", {"is no scene"}},
+      {R"({"format": "spherule-spheres", "version": 1})", {"is no scene"}},
+      {R"({"format": "spherule-scene"})", {"'version' is missing"}},
+      {R"({"format": "spherule-scene", "version": 2})", {"version: is not 1"}},
+      {R"({"format": "spherule-scene", "version": 1.0})", {"is not a whole number"}},
+      {scene(R"("obstacle": [])"), {"the key 'obstacle' is not known here"}},
+      {scene(R"("obstacles": [], "obstacles": [])"), {"\"obstacles\" appears twice"}},
+      {scene(R"("obstacles": {})"), {"obstacles: is not a list"}},
+      {scene(R"("robot": {)" + keys + R"("k": 0})"), {"too many keys"}},
+  });
   EXPECT_THROW(read_scene(folder_.path() / "none.json"), Error);
 }
 
 TEST_F(SceneFileTest, RefusesFaultyObstacles) {
-  expect_fault(scene(R"("obstacles": [{"ball": {"radius": 1}}])"), "obstacle 0: 'name'");
-  expect_fault(scene(R"("obstacles": [{"name": "", "ball": {"radius": 1}}])"), "is empty");
-  expect_fault(scene(R"("obstacles": [{"name": "a", "half_space": {}},
-                                      {"name": "a", "half_space": {}}])"),
-               "obstacle 1: the name 'a' is there twice");
-  expect_fault(scene(R"("obstacles": [{"name": "a", "half_space": {}}],
-                        "attached": [{"name": "a", "link": "b", "tree": {"file": "c"}}])"),
-               "attached object 0: the name 'a' is there twice");
-  expect_fault(obstacle(R"("pose": {})"), "obstacle 0 'table': has no shape: one of mesh");
-  expect_fault(obstacle(R"("half_space": {}, "ball": {"radius": 1})"), "has both");
-  expect_fault(obstacle(R"("ball": {"radius": -1})"), "'table', ball: the radius");
-  expect_fault(obstacle(R"("ball": {"radius": 1e16})"), "is beyond 1e15");
-  expect_fault(obstacle(R"("ball": {"radius": "1"})"), "is not a number");
-  expect_fault(obstacle(R"("ball": {"radius": 1, "length": 2})"), "the key 'length'");
-  expect_fault(obstacle(R"("ball": {})"), "'radius' is missing");
-  expect_fault(obstacle(R"("box": {"size": [1, 2]})"), "is not a list of 3 numbers");
-  expect_fault(obstacle(R"("box": {"size": [1, 2, 0]})"), "a size of the box");
-  expect_fault(obstacle(R"("mesh": "part.stl")"), "mesh: is not an object");
-  expect_fault(obstacle(R"("mesh": {"file": "a.stl", "scale": 0})"), "scale: is 0");
-  expect_fault(obstacle(R"("points": {"file": "a.ply"})"), "'radius' is missing");
-  expect_fault(obstacle(R"("points": {"file": "a.ply", "radius": 0})"), "is not above 0");
-  expect_fault(obstacle(R"("half_space": {}, "pose": {"position": [0, 0, 1e400]})"), "1e400");
-  expect_fault(obstacle(R"("half_space": {}, "pose": {"xyz": [0, 0, 1]})"), "the key 'xyz'");
-  expect_fault(obstacle(R"("half_space": {}, "pose": {"quaternion": [0, 0, 0, 0]})"), "is zero");
-  expect_fault(obstacle(R"("half_space": {}, "pose": {"quaternion": [0,0,0,1], "rpy": [0,0,0]})"),
-               "has both 'quaternion' and 'rpy'");
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {R"("pose": {})", "obstacle 0 'table': has no shape: one of mesh"},
+      {R"("half_space": {}, "ball": {"radius": 1})", "has both"},
+      {R"("ball": {"radius": -1})", "'table', ball: the radius"},
+      {R"("ball": {"radius": 1e16})", "is beyond 1e15"},
+      {R"("ball": {"radius": "1"})", "is not a number"},
+      {R"("ball": {"radius": 1, "length": 2})", "the key 'length'"},
+      {R"("ball": {})", "'radius' is missing"},
+      {R"("box": {"size": [1, 2]})", "is not a list of 3 numbers"},
+      {R"("box": {"size": [1, 2, 3, 4]})", "is not a list of 3 numbers"},
+      {R"("box": {"size": [1, 2, 0]})", "a size of the box"},
+      {R"("mesh": "part.stl")", "mesh: is not an object"},
+      {R"("mesh": {"file": 1})", "file: is not a text"},
+      {R"("mesh": {"file": ""})", "file: is empty"},
+      {R"("mesh": {"file": "a.stl", "scale": 0})", "scale: is 0"},
+      {R"("mesh": {"file": "a", "scale": [1, 0, 1]})", "scale: is 0"},
+      {R"("mesh": {"file": "a", "scale": [1, 1]})", "is not a list of 3"},
+      {R"("points": {"file": "a.ply"})", "'radius' is missing"},
+      {R"("points": {"file": "a.ply", "radius": 0})", "is not above 0"},
+      {R"("points": {"file": "a", "radius": 1, "voxel": -1})", "voxel: is below 0"},
+      {R"("points": {"file": "a", "radius": 1, "scale": 0})", "scale: is not above 0"},
+      {R"("half_space": {}, "pose": {"position": [0, 0, 1e400]})", "1e400"},
+      {R"("half_space": {}, "pose": {"xyz": [0, 0, 1]})", "the key 'xyz'"},
+      {R"("half_space": {}, "pose": {"quaternion": [0, 0, 1]})", "is not a list of 4 numbers"},
+      {R"("half_space": {}, "pose": {"quaternion": [0, 0, 0, 0]})", "is zero"},
+      {R"("half_space": {}, "pose": {"quaternion": [0,0,0,1], "rpy": [0,0,0]})",
+       "has both 'quaternion' and 'rpy'"},
+  };
+  for (const auto& [keys, part] : faults) expect_faults({{obstacle(keys), {part}}});
 }
 
-TEST_F(SceneFileTest, RefusesFaultyRest) {
-  expect_fault(scene(R"("attached": [{"name": "a", "tree": {"file": "c"}}])"),
-               "attached object 0 'a': 'link' is missing");
-  expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "box": {"size": [1, 1, 1]}}])"),
-               "the key 'box' is not known here");
-  expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "tree": {"file": "c"},
-                                      "max_error": 1}])"),
-               "is for meshes");
-  expect_fault(scene(R"("regions": [{"body": "a", "name": "tip", "ball": {"radius": 1}}])"),
-               "'center' is missing");
-  expect_fault(scene(R"("allowed_contacts": [{"body": "a", "region": "tip", "other": "b"}])"),
-               "'a' has no region 'tip'");
-  expect_fault(scene(R"("allowed_contacts": [{"body": "a"}])"), "'other' is missing");
-  expect_fault(scene(R"("padding": [{"body": "a", "distance": -1}])"), "is below 0");
-  expect_fault(scene(R"("padding": [{"body": "a", "other": "b", "distance": 1},
-                                     {"body": "b", "other": "a", "distance": 0}])"),
-               "the padding of 'b' is given twice");
-  expect_fault(scene(R"("robot": {"urdf": "a"})"), "robot: the key 'urdf'");
+TEST_F(SceneFileTest, RefusesFaultyLists) {
+  const std::string region = R"({"body": "a", "name": "tip", "ball": {"center": [0, 0, 0], )";
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {R"("obstacles": [{"ball": {"radius": 1}}])", "obstacle 0: 'name'"},
+      {R"("obstacles": [{"name": "", "ball": {"radius": 1}}])", "is empty"},
+      {R"("obstacles": [{"name": "a", "half_space": {}}, {"name": "a", "half_space": {}}])",
+       "obstacle 1: the name 'a' is there twice"},
+      {R"("obstacles": [{"name": "a", "half_space": {}}],
+          "attached": [{"name": "a", "link": "b", "tree": {"file": "c"}}])",
+       "attached object 0: the name 'a' is there twice"},
+      {R"("attached": [{"name": "a", "tree": {"file": "c"}}])",
+       "attached object 0 'a': 'link' is missing"},
+      {R"("attached": [{"name": "a", "link": "b", "box": {"size": [1, 1, 1]}}])",
+       "the key 'box' is not known here"},
+      {R"("attached": [{"name": "a", "link": "b", "tree": {"file": "c"}, "max_error": 1}])",
+       "is for meshes"},
+      {R"("attached": [{"name": "a", "link": "b", "mesh": {"file": "c"}, "max_error": 0}])",
+       "max_error: is not above 0"},
+      {R"("regions": [{"body": "a", "name": "tip", "ball": {"radius": 1}}])",
+       "'center' is missing"},
+      {R"("regions": [)" + region + R"("radius": 0}}])", "radius: is not above 0"},
+      {R"("regions": [)" + region + R"("radius": 1}}, )" + region + R"("radius": 2}}])",
+       "the region 'tip' of 'a' is there twice"},
+      {R"("allowed_contacts": [{"body": "a", "region": "tip", "other": "b"}])",
+       "'a' has no region 'tip'"},
+      {R"("allowed_contacts": [{"body": "a"}])", "'other' is missing"},
+      {R"("padding": [{"body": "a", "distance": -1}])", "is below 0"},
+      {R"("padding": [{"body": "a", "other": "b", "distance": 1},
+                      {"body": "b", "other": "a", "distance": 0}])",
+       "the padding of 'b' is given twice"},
+      {R"("robot": {"urdf": "a"})", "robot: the key 'urdf'"},
+  };
+  for (const auto& [keys, part] : faults) expect_faults({{scene(keys), {part}}});
 }
 
 // A misspelt word must not place an obstacle elsewhere than it was meant.
@@ -209,7 +222,7 @@ TEST_F(SceneFileTest, RefusesUnknownKeysAtEveryPlace) {
         R"("cylinder": {"radius": 1, "length": 1, "odd": 1})", R"("tree": {"file": "a", "odd": 1})",
         R"("capsule": {"radius": 1, "length": 1, "odd": 1})", R"("half_space": {}, "odd": 1)",
         R"("spheres": {"file": "a", "odd": 1})", R"("half_space": {}, "pose": {"odd": 1})"}) {
-    expect_fault(obstacle(object), "the key 'odd' is not known here");
+    expect_faults({{obstacle(object), {"the key 'odd' is not known here"}}});
   }
   for (const std::string list :
        {R"("attached": [{"name": "a", "link": "b", "tree": {"file": "c"}, "odd": 1}])",
@@ -219,34 +232,9 @@ TEST_F(SceneFileTest, RefusesUnknownKeysAtEveryPlace) {
                         "odd": 1}}])",
         R"("allowed_contacts": [{"body": "a", "other": "b", "odd": 1}])",
         R"("padding": [{"body": "a", "distance": 1, "odd": 1}])", R"("robot": {"odd": 1})"}) {
-    expect_fault(scene(list), "the key 'odd' is not known here");
+    expect_faults({{scene(list), {"the key 'odd' is not known here"}}});
   }
 }
-
-TEST_F(SceneFileTest, RefusesFaultyValues) {
-  expect_fault(obstacle(R"("points": {"file": "a", "radius": 1, "voxel": -1})"),
-               "voxel: is below 0");
-  expect_fault(obstacle(R"("points": {"file": "a", "radius": 1, "scale": 0})"),
-               "scale: is not above 0");
-  expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 0, 1]})"), "scale: is 0");
-  expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 1]})"), "is not a list of 3");
-  expect_fault(obstacle(R"("mesh": {"file": 1})"), "file: is not a text");
-  expect_fault(obstacle(R"("mesh": {"file": ""})"), "file: is empty");
-  expect_fault(obstacle(R"("box": {"size": [1, 2, 3, 4]})"), "is not a list of 3 numbers");
-  expect_fault(obstacle(R"("half_space": {}, "pose": {"quaternion": [0, 0, 1]})"),
-               "is not a list of 4 numbers");
-  expect_fault(R"({"format": "spherule-scene", "version": 1.0})", "is not a whole number");
-  const std::string region = R"({"body": "a", "name": "tip", "ball": {"center": [0, 0, 0], )";
-  expect_fault(scene(R"("regions": [)" + region + R"("radius": 0}}])"), "radius: is not above 0");
-  expect_fault(
-      scene(R"("regions": [)" + region + R"("radius": 1}}, )" + region + R"("radius": 2}}])"),
-      "the region 'tip' of 'a' is there twice");
-  expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "mesh": {"file": "c"},
-                                      "max_error": 0}])"),
-               "max_error: is not above 0");
-}
-
-using Eigen::Vector3d;
 
 class PointCloudFileTest : public testing::Test {
  protected:
@@ -254,12 +242,7 @@ class PointCloudFileTest : public testing::Test {
     return read_point_cloud(folder_.write(name, bytes), scale);
   }
   std::string fault(const std::string& name, std::string_view bytes, double scale = 1.0) const {
-    try {
-      read(name, bytes, scale);
-    } catch (const Error& error) {
-      return error.reason();
-    }
-    return "none";
+    return reason_of([&] { read(name, bytes, scale); });
   }
 
   const TempDir folder_;
@@ -434,7 +417,7 @@ TEST_F(PointCloudFileTest, PlyInBytes) {
     EXPECT_EQ(cloud.point_error, 0.0);
     // However it is cut short, it is refused.
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-      ASSERT_NE(fault("a.ply", bytes.substr(0, length)), "none") << length;
+      ASSERT_NE(fault("a.ply", bytes.substr(0, length)), "nothing is wrong") << length;
     }
   }
 }
@@ -444,12 +427,12 @@ TEST_F(PointCloudFileTest, Refuses) {
   EXPECT_EQ(fault("a.xyz", "1 2 3\n\n1 2\n"), "line 3: has no x, y and z");
   EXPECT_EQ(fault("a.xyz", "1 2 nan\n"), "line 1: 'nan' is not a finite number");
   EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15 or not finite");
-  EXPECT_NE(fault("a.stl", "1 2 3\n"), "none");
-  EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "none");
+  EXPECT_NE(fault("a.stl", "1 2 3\n"), "nothing is wrong");
+  EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "nothing is wrong");
   for (const double scale : {1e-310, 2e15}) {
     EXPECT_EQ(fault("a.xyz", "0 0 0\n", scale), "the scale is not a number from 1e-300 to 1e15");
   }
-  EXPECT_NE(fault("a.xyz", "1 2 3\n", std::nan("")), "none");
+  EXPECT_NE(fault("a.xyz", "1 2 3\n", std::nan("")), "nothing is wrong");
   EXPECT_THROW(read_point_cloud(folder_.path() / "none.ply"), Error);
 }
 

@@ -4,11 +4,11 @@
 #include "robot/files/srdf.h"
 
 #include "base/error.h"
+#include "tests/robot/refusals.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>
 
-#include <utility>
 #include <vector>
 
 namespace spherule::test::srdf_test {
@@ -23,17 +23,7 @@ SemanticDescription read_text(const std::string& text) {
   return read_srdf(folder.write("robot.srdf", text));
 }
 
-std::string refusal_of(const std::string& text) {
-  const TempDir folder;
-  const std::filesystem::path file = folder.write("robot.srdf", text);
-  try {
-    read_srdf(file);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.subject(), file.string());
-    return error.reason();
-  }
-  return "nothing is wrong";
-}
+const auto read_file = [](const std::filesystem::path& file) { read_srdf(file); };
 
 constexpr const char* kRobot = R"(<?xml version="1.0"?>
     <!-- a robot -->
@@ -121,18 +111,13 @@ TEST(ReadSrdf, TellsOfSoManyNamesOnly) {
   EXPECT_EQ(unknown_names(semantics, RobotModel("base")).size(), kMostUnknownNames);
 }
 
-struct BadFile {
-  std::string text;
-  std::vector<std::string> reasons;
-};
-
 TEST(ReadSrdf, RefusesBadFiles) {
   const auto spheres = [](const std::string& sphere) {
     return robot_of("<link_sphere_approximation link='a'>\n<sphere " + sphere +
                     "/></link_sphere_approximation>");
   };
   const std::string group = "<group name='g'/>";
-  const std::vector<BadFile> files = {
+  const std::vector<BadText> files = {
       {"", {"not XML"}},
       {"<robot name='r'>", {"not XML"}},
       {"<srdf/>", {"no <robot>"}},
@@ -184,34 +169,25 @@ TEST(ReadSrdf, RefusesBadFiles) {
       {spheres("center='0 0 0' radius='1e16'"), {"too large"}},
       {spheres("center='0 -1e16 0' radius='1'"), {"too large"}},
   };
-  for (const BadFile& file : files) {
-    const std::string refusal = refusal_of(file.text);
-    for (const std::string& reason : file.reasons) {
-      EXPECT_NE(refusal.find(reason), std::string::npos)
-          << file.text << "\nis refused because: " << refusal << "\nand not: " << reason;
-    }
-  }
+  expect_refusals(files, read_file);
   EXPECT_THROW(read_srdf("no such file.srdf"), Error);
 }
 
 // Each fault that the parser of XML tells apart has its own words.
 TEST(ReadSrdf, SaysWhatIsNotXml) {
-  const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "is not XML: nothing is in it"},
+  const std::vector<BadText> cases = {
+      {"", {"is not XML: nothing is in it"}},
       {"<robot>\n<group></robot>",
-       "line 2: is not XML: an element is not closed, or by the tag of another"},
-      {"<robot>", "line 1: is not XML: an element is not closed"},
-      {"<robot><link name='a' name='b'/></robot>", "an attribute is there twice, or not written"},
-      {"<robot><link name=a/></robot>", "an attribute is there twice, or not written"},
-      {"<robot><!-- </robot>", "a comment is not ended"},
-      {"<robot><![CDATA[ </robot>", "a CDATA section is not ended"},
-      {"<robot><? </robot>", "a declaration is not ended, or not at the beginning"},
-      {"<robot><! </robot", "a tag that begins with <! is not ended"},
-      {"<robot", "a tag is not complete"}};
-  for (const auto& [text, words] : cases) {
-    const std::string refusal = refusal_of(text);
-    EXPECT_NE(refusal.find(words), std::string::npos) << text << ": " << refusal;
-  }
+       {"line 2: is not XML: an element is not closed, or by the tag of another"}},
+      {"<robot>", {"line 1: is not XML: an element is not closed"}},
+      {"<robot><link name='a' name='b'/></robot>", {"an attribute is there twice, or not written"}},
+      {"<robot><link name=a/></robot>", {"an attribute is there twice, or not written"}},
+      {"<robot><!-- </robot>", {"a comment is not ended"}},
+      {"<robot><![CDATA[ </robot>", {"a CDATA section is not ended"}},
+      {"<robot><? </robot>", {"a declaration is not ended, or not at the beginning"}},
+      {"<robot><! </robot", {"a tag that begins with <! is not ended"}},
+      {"<robot", {"a tag is not complete"}}};
+  expect_refusals(cases, read_file);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include "robot/files/trajectory_file.h"
 
 #include "base/error.h"
+#include "tests/robot/refusals.h"
+#include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
@@ -16,21 +18,16 @@
 namespace spherule::test {
 namespace {
 
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180.0;
+
 // Joints a, b (mimics a), fixed and c: two variables.
 RobotModel small_robot() {
   RobotModel robot("base");
-  const auto add = [&](const char* name, const char* parent, JointType type) {
-    Joint joint;
-    joint.name = name;
-    joint.type = type;
-    joint.lower = -1.0;
-    joint.upper = 1.0;
-    robot.add_link(std::string("link_") + name, parent, joint);
-  };
-  add("a", "base", JointType::kRevolute);
-  add("b", "link_a", JointType::kPrismatic);
-  add("fixed", "link_b", JointType::kFixed);
-  add("c", "link_fixed", JointType::kContinuous);
+  robot.add_link("1", "base", turning(-1.0, 1.0, "a"));
+  robot.add_link("2", "1", sliding(-1.0, 1.0, "b"));
+  robot.add_link("3", "2", {.name = "fixed"});
+  robot.add_link("4", "3", wheel("c"));
   robot.mimic("b", "a", 0.5);
   return robot;
 }
@@ -40,16 +37,9 @@ class TrajectoryFileTest : public testing::Test {
   Trajectory read(std::string_view text) const {
     return read_trajectory(folder_.write("path.csv", text), robot_);
   }
-  // What a text is refused for, without the file's name.
   std::string fault(std::string_view text) const {
-    const std::filesystem::path path = folder_.write("path.csv", text);
-    try {
-      read_trajectory(path, robot_);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.subject(), path.string());
-      return error.reason();
-    }
-    return "none";
+    return refusal_of(text,
+                      [&](const std::filesystem::path& file) { read_trajectory(file, robot_); });
   }
 
   const TempDir folder_;
@@ -59,12 +49,10 @@ class TrajectoryFileTest : public testing::Test {
 // Angles of joints that turn; lengths stay as they are, and so do columns that are passed over.
 TEST_F(TrajectoryFileTest, InDegrees) {
   RobotModel robot = small_robot();
-  robot.add_link("link_d", "link_c",
-                 {.name = "d", .type = JointType::kPrismatic, .lower = -1.0, .upper = 1.0});
+  robot.add_link("5", "4", sliding(-1.0, 1.0, "d"));
   const auto read_degrees = [&](std::string_view text) {
     return read_trajectory(folder_.write("path.csv", text), robot, AngleUnit::kDegrees);
   };
-  constexpr double kPi = 3.14159265358979323846;
   const Trajectory path = read_degrees("d time c a\n0.5 9 180 -90\n90 7 1e-3 0\n");
   ASSERT_EQ(path.size(), 2u);
   const std::vector<double> expected = {-kPi / 2.0, kPi, 0.5, 0.0, 1e-3 / 180.0 * kPi, 90.0};
@@ -100,7 +88,7 @@ TEST_F(TrajectoryFileTest, LinesEndWithEitherCharacterOrBoth) {
 // A column of that name is of the joint where there is one.
 TEST_F(TrajectoryFileTest, AJointMayBeCalledTime) {
   RobotModel robot("base");
-  robot.add_link("hand", "base", {.name = "time", .type = JointType::kContinuous});
+  robot.add_link("hand", "base", wheel("time"));
   const Trajectory path = read_trajectory(folder_.write("path.csv", "time\n0.5\n"), robot);
   EXPECT_EQ(path.positions, std::vector<double>{0.5});
 }
@@ -131,28 +119,19 @@ TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_EQ(fault("a,c\n1,2\na,c\n"), "line 3: 'a' is not a finite number");
   EXPECT_THROW(read_trajectory(folder_.path() / "none.csv", robot_), Error);
   EXPECT_EQ(fault("time,a,c\n0,1,2\nnan,1,2\n"), "line 3: 'nan' is not a finite number");
-  try {
-    read_trajectory(folder_.write("path.csv", "1\n"), RobotModel());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.reason(), "the robot has no joint that moves");
-  }
+  const std::filesystem::path path = folder_.write("path.csv", "1\n");
+  EXPECT_EQ(reason_of([&] { read_trajectory(path, RobotModel()); }),
+            "the robot has no joint that moves");
 }
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 
 // An elbow of -2 to 2.5 rad, a slide of +-1 m, a finger that follows it at half its position within
 // 0.4 m, and a wheel that turns without limits: three numbers.
 RobotModel robot_of_all_kinds() {
   RobotModel robot("base");
-  robot.add_link("forearm", "base",
-                 {.name = "elbow", .type = JointType::kRevolute, .lower = -2.0, .upper = 2.5});
-  robot.add_link("slider", "forearm",
-                 {.name = "slide", .type = JointType::kPrismatic, .lower = -1.0, .upper = 1.0});
-  robot.add_link("tip", "slider",
-                 {.name = "finger", .type = JointType::kPrismatic, .lower = -0.4, .upper = 0.4});
-  robot.add_link("disc", "slider", {.name = "wheel", .type = JointType::kContinuous});
+  robot.add_link("forearm", "base", turning(-2.0, 2.5, "elbow"));
+  robot.add_link("slider", "forearm", sliding(-1.0, 1.0, "slide"));
+  robot.add_link("tip", "slider", sliding(-0.4, 0.4, "finger"));
+  robot.add_link("disc", "slider", wheel("wheel"));
   robot.mimic("finger", "slide", 0.5);
   return robot;
 }

@@ -2,16 +2,19 @@
 #include "base/files.h"
 #include "robot/files/urdf.h"
 #include "robot/model/kinematics.h"
-#include "tests/robot/files/kdl_robot.h"
 #include "tests/robot/files/random_urdf.h"
+#include "tests/robot/robots.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
 #include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>
+#include <kdl/frames.hpp>
+#include <kdl/joint.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
@@ -21,130 +24,7 @@
 #include <variant>
 #include <vector>
 
-// What published robots have that URDF does not know, or that has no extent.
-
-namespace spherule::test::published_urdf {
-namespace {
-
-std::string robot_of(const std::string& in_link) {
-  return "<robot name='r'><link name='base'>" + in_link + "</link></robot>";
-}
-
-std::string joint_of(const std::string& type, const std::string& in_joint) {
-  return "<robot name='r'><link name='base'/><link name='arm'/><joint name='elbow' type='" + type +
-         "'><parent link='base'/><child link='arm'/>" + in_joint + "</joint></robot>";
-}
-
-RobotDescription read_text(const std::string& text) {
-  const TempDir folder;
-  return read_urdf(folder.write("robot.urdf", text));
-}
-
-// A point of contact and a flat box are held by what is read; what stands for no shape is not seen.
-TEST(PublishedUrdf, WidensShapesWithoutExtent) {
-  const RobotDescription robot = read_text(robot_of(R"(
-      <visual> <geometry> <box size="0 0 0"/> </geometry> </visual>
-      <visual> <geometry> <sphere radius="0.0"/> </geometry> </visual>
-      <visual> <geometry> <box size="1 0 2"/> </geometry> </visual>
-      <visual> <geometry> <sphere radius="1e-6"/> </geometry> </visual>
-      <collision> <origin xyz="1 2 3"/> <geometry> <sphere radius="0"/> </geometry> </collision>
-      <collision> <geometry> <cylinder radius="0" length="0"/> </geometry> </collision>)"));
-  const LinkDescription& link = robot.links[0];
-  ASSERT_EQ(link.visual.size(), 2U);
-  const auto solid = [](const LinkShape& shape) { return std::get<Primitive>(shape.geometry); };
-  EXPECT_EQ(std::get<Box>(solid(link.visual[0])).size, Eigen::Vector3d(1, 1e-6, 2));
-  EXPECT_EQ(std::get<SolidSphere>(solid(link.visual[1])).radius, 1e-6);
-  ASSERT_EQ(link.collision.size(), 2U);
-  EXPECT_EQ(std::get<SolidSphere>(solid(link.collision[0])).radius, 1e-6);
-  EXPECT_EQ(link.collision[0].link_from_shape.translation(), Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(std::get<Cylinder>(solid(link.collision[1])).radius, 1e-6);
-  EXPECT_EQ(std::get<Cylinder>(solid(link.collision[1])).length, 1e-6);
-}
-
-// Where published robots have more than URDF knows.
-TEST(PublishedUrdf, LeavesOutWhatMeansNothing) {
-  EXPECT_EQ(
-      read_text(joint_of("continuous", "<axis rpy='0 0 0' xyz='0 1 0'/>")).model.joints()[0].axis,
-      Eigen::Vector3d::UnitY());
-  EXPECT_EQ(read_text(joint_of("fixed", "<axis xzy='0 0 1'/>")).model.joints().size(), 1U);
-  const RobotDescription robot = read_text(robot_of(
-      "<collision><geometry><sphere radius='1'/><drake:declare_convex/></geometry></collision>"
-      "<visual><geometry><sphere radius='2'/><material name='grey'/></geometry></visual>"));
-  EXPECT_EQ(robot.links[0].collision.size(), 1U);
-  EXPECT_EQ(robot.links[0].visual.size(), 1U);
-}
-
-}  // namespace
-}  // namespace spherule::test::published_urdf
-
-// The kinematics of robots that were read from files, against KDL.
-
-namespace spherule::test {
-namespace {
-
-std::string name_of_variable(const RobotModel& robot, int variable) {
-  const int joint = robot.variable_joints()[static_cast<std::size_t>(variable)];
-  return robot.joints()[static_cast<std::size_t>(joint)].name;
-}
-
-void compare_with_kdl(const std::filesystem::path& urdf, Random& random, int configurations) {
-  const RobotDescription robot = read_urdf(urdf);
-  const KdlRobot kdl(urdf);
-  ASSERT_EQ(robot.model.links().size(), kdl.links().size());
-  ASSERT_EQ(static_cast<std::size_t>(robot.model.variable_count()), kdl.variables().size());
-  for (int i = 0; i < configurations; ++i) {
-    std::vector<double> configuration;
-    std::map<std::string, double> by_name;
-    for (int k = 0; k < robot.model.variable_count(); ++k) {
-      configuration.push_back(i == 0 ? 0.0 : random.between(-3.0, 3.0));
-      by_name[name_of_variable(robot.model, k)] = configuration.back();
-    }
-    std::vector<Pose> poses;
-    forward_kinematics(robot.model, configuration, poses);
-    const auto expected = kdl.poses(by_name);
-    for (std::size_t link = 0; link < poses.size(); ++link) {
-      const Eigen::Isometry3d& pose = expected.at(robot.model.links()[link].name);
-      const double size = 1.0 + pose.translation().norm();
-      ASSERT_LE((poses[link].matrix() - pose.linear()).cwiseAbs().maxCoeff(), 1e-11);
-      ASSERT_LE((poses[link].translation() - pose.translation()).norm(), 1e-11 * size)
-          << robot.model.links()[link].name;
-    }
-  }
-}
-
-TEST(UrdfKinematics, AgreesWithKdlOnRandomRobots) {
-  Random random(61);
-  const TempDir folder;
-  for (int i = 0; i < effort(200, 20); ++i) {
-    const std::string urdf = random_urdf(random, static_cast<int>(random.index(15)));
-    SCOPED_TRACE(urdf);
-    compare_with_kdl(folder.write("robot_" + std::to_string(i) + ".urdf", urdf), random, 5);
-    if (HasFatalFailure()) return;
-  }
-}
-
-TEST(UrdfKinematics, AgreesWithKdlOnRealRobots) {
-  const auto models = models_dir();
-  if (!models) GTEST_SKIP() << "SPHERULE_MODELS names no folder";
-  Random random(62);
-  std::set<std::string> read;
-  for (const auto& robot : std::filesystem::directory_iterator(*models / "robots")) {
-    for (const auto& file : std::filesystem::directory_iterator(robot)) {
-      if (file.path().extension() != ".urdf") continue;
-      SCOPED_TRACE(file.path());
-      compare_with_kdl(file.path(), random, 50);
-      read.insert(file.path().stem());
-    }
-  }
-  for (const char* name : {"irb4400l_30_243", "fr3_collision", "franka_panda", "panda_collision"}) {
-    EXPECT_TRUE(read.contains(name)) << name;
-  }
-}
-
-}  // namespace
-}  // namespace spherule::test
-
-// What is read from URDF files, against urdfdom.
+// What is read from URDF files, against urdfdom, and the kinematics of these robots, against KDL.
 
 namespace spherule::test::urdf_oracle_test {
 namespace {
@@ -220,9 +100,63 @@ std::size_t expect_shapes(const std::vector<LinkShape>& shapes, const Shapes& ex
   return shapes.size();
 }
 
+KDL::Frame frame_of(const urdf::Pose& pose) {
+  const auto& [x, y, z, w] = pose.rotation;
+  return {KDL::Rotation::Quaternion(x, y, z, w),
+          KDL::Vector(pose.position.x, pose.position.y, pose.position.z)};
+}
+
+double position_of(const urdf::ModelInterface& robot, const std::string& joint,
+                   const std::map<std::string, double>& positions) {
+  const auto& mimic = robot.joints_.at(joint)->mimic;
+  if (mimic == nullptr) return positions.at(joint);
+  return mimic->multiplier * position_of(robot, mimic->joint_name, positions) + mimic->offset;
+}
+
+// The pose of a link, seen from the root.
+KDL::Frame pose_of(const urdf::ModelInterface& robot, const std::string& link,
+                   const std::map<std::string, double>& positions) {
+  const urdf::JointSharedPtr joint = robot.links_.at(link)->parent_joint;
+  if (joint == nullptr) return KDL::Frame::Identity();
+  const KDL::Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
+  KDL::Joint motion(KDL::Joint::None);
+  double position = 0.0;
+  if (joint->type != urdf::Joint::FIXED) {
+    const bool slides = joint->type == urdf::Joint::PRISMATIC;
+    motion = {KDL::Vector::Zero(), axis, slides ? KDL::Joint::TransAxis : KDL::Joint::RotAxis};
+    position = position_of(robot, joint->name, positions);
+  }
+  return pose_of(robot, joint->parent_link_name, positions) *
+         frame_of(joint->parent_to_joint_origin_transform) * motion.pose(position);
+}
+
+void compare_with_kdl(const RobotModel& robot, const urdf::ModelInterface& expected,
+                      Random& random) {
+  for (int i = 0; i < 5; ++i) {
+    const std::vector<double> configuration =
+        random_configuration(random, robot, i == 0 ? 0.0 : 3.0);
+    std::map<std::string, double> positions;
+    for (const Joint& joint : robot.joints()) {
+      if (joint.moves()) positions[joint.name] = joint.position(configuration);
+    }
+    std::vector<Pose> poses;
+    forward_kinematics(robot, configuration, poses);
+    for (std::size_t link = 0; link < poses.size(); ++link) {
+      const KDL::Frame pose = pose_of(expected, robot.links()[link].name, positions);
+      for (int row = 0; row < 3; ++row) {
+        ASSERT_NEAR(poses[link].translation()[row], pose.p[row], 1e-11 * (1.0 + pose.p.Norm()))
+            << robot.links()[link].name;
+        for (int column = 0; column < 3; ++column) {
+          ASSERT_NEAR(poses[link].matrix()(row, column), pose.M(row, column), 1e-11);
+        }
+      }
+    }
+  }
+}
+
 // The number of shapes that were compared. Of white space in a number or a vector, urdfdom knows
 // one blank between two numbers.
-std::size_t compare_with_urdfdom(const fs::path& file) {
+std::size_t compare(const fs::path& file, Random& random) {
   std::string text = std::regex_replace(read_file(file), std::regex("[ \n\t]+"), " ");
   text = std::regex_replace(text, std::regex("=' ([0-9]+) '"), "='$1'");
   const urdf::ModelInterfaceSharedPtr expected = urdf::parseURDF(text);
@@ -244,30 +178,32 @@ std::size_t compare_with_urdfdom(const fs::path& file) {
     shapes += expect_shapes(link.visual, expected->links_.at(link.name)->visual_array);
     shapes += expect_shapes(link.collision, expected->links_.at(link.name)->collision_array);
   }
+  compare_with_kdl(robot.model, *expected, random);
   return shapes;
 }
 
-TEST(UrdfOracle, AgreesWithUrdfdomOnRandomRobots) {
+TEST(UrdfOracle, AgreesOnRandomRobots) {
   Random random(63);
   const TempDir folder;
   std::size_t shapes = 0;
   for (int i = 0; i < effort(200, 20) && !::testing::Test::HasFailure(); ++i) {
     const std::string urdf = random_urdf(random, static_cast<int>(random.index(15)));
     SCOPED_TRACE(urdf);
-    shapes += compare_with_urdfdom(folder.write("robot_" + std::to_string(i) + ".urdf", urdf));
+    shapes += compare(folder.write("robot_" + std::to_string(i) + ".urdf", urdf), random);
   }
   EXPECT_GT(shapes, 20U);
 }
 
-TEST(UrdfOracle, AgreesWithUrdfdomOnRealRobots) {
+TEST(UrdfOracle, AgreesOnRealRobots) {
   const auto models = models_dir();
   if (!models) GTEST_SKIP() << "SPHERULE_MODELS names no folder";
+  Random random(62);
   std::set<std::string> read;
   std::size_t shapes = 0;
   for (const auto& file : fs::recursive_directory_iterator(*models / "robots")) {
     if (file.path().extension() != ".urdf") continue;
     SCOPED_TRACE(file.path());
-    shapes += compare_with_urdfdom(file.path());
+    shapes += compare(file.path(), random);
     read.insert(file.path().stem());
   }
   for (const char* name : {"irb4400l_30_243", "fr3_collision", "franka_panda", "panda_collision"}) {

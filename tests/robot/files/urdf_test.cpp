@@ -4,13 +4,18 @@
 #include "robot/files/urdf.h"
 
 #include "base/error.h"
+#include "tests/robot/refusals.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <locale>
 #include <numbers>
+#include <string>
+#include <variant>
 #include <vector>
 
 namespace spherule::test {
@@ -39,18 +44,7 @@ RobotDescription read_text(const std::string& text, const UrdfOptions& options =
   return read_urdf(folder.write("robot.urdf", text), options);
 }
 
-// The reason for which it is refused; the subject has to be the file.
-std::string refusal_of(const std::string& text) {
-  const TempDir folder;
-  const fs::path file = folder.write("robot.urdf", text);
-  try {
-    read_urdf(file);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.subject(), file.string());
-    return error.reason();
-  }
-  return "nothing is wrong";
-}
+const auto read_file = [](const fs::path& file) { read_urdf(file); };
 
 TEST(ReadUrdf, ReadsJointsOfAllTypes) {
   const RobotDescription robot = read_text(R"(
@@ -95,21 +89,6 @@ TEST(ReadUrdf, ReadsJointsOfAllTypes) {
   EXPECT_EQ(robot.model.variable_count(), 3);
 }
 
-TEST(ReadUrdf, ReadsMimics) {
-  const RobotDescription robot = read_text(robot_of(R"(
-      <link name="0"/> <link name="1"/> <link name="2"/> <link name="3"/>
-      <joint name="a" type="continuous"> <parent link="0"/> <child link="1"/>
-        <mimic joint="b" multiplier="2" offset="1"/> </joint>
-      <joint name="b" type="continuous"> <parent link="1"/> <child link="2"/>
-        <mimic joint="c" multiplier="-3"/> </joint>
-      <joint name="c" type="continuous"> <parent link="2"/> <child link="3"/> </joint>)"));
-  EXPECT_EQ(robot.model.variable_count(), 1);
-  const Joint& a = robot.model.joints()[0];
-  EXPECT_EQ(a.variable, 0);
-  EXPECT_EQ(a.multiplier, -6.0);
-  EXPECT_EQ(a.offset, 1.0);
-}
-
 TEST(ReadUrdf, ReadsShapes) {
   const TempDir folder;
   fs::create_directories(folder.path() / "meshes");
@@ -140,6 +119,16 @@ TEST(ReadUrdf, ReadsShapes) {
   EXPECT_EQ(std::get<SolidSphere>(solid(2)).radius, 6.0);
 }
 
+// The file that a URDF's name of a mesh means, seen from the folder.
+std::string found_mesh(const TempDir& folder, const std::string& urdf, const std::string& name,
+                       const UrdfOptions& options = {}) {
+  const fs::path file = folder.write(
+      urdf, link_of("<visual><geometry><mesh filename='" + name + "'/></geometry></visual>"));
+  const RobotDescription robot = read_urdf(file, options);
+  const fs::path path = std::get<MeshFile>(robot.links[0].visual[0].geometry).path;
+  return fs::relative(path, folder.path()).string();
+}
+
 TEST(ReadUrdf, FindsMeshes) {
   const TempDir folder;
   fs::create_directories(folder.path() / "src/arm/urdf");
@@ -150,12 +139,7 @@ TEST(ReadUrdf, FindsMeshes) {
     folder.write(name, "");
   }
   const auto find = [&](const std::string& name, const UrdfOptions& options = {}) {
-    const fs::path file = folder.write(
-        "src/arm/urdf/robot.urdf",
-        link_of("<visual><geometry><mesh filename='" + name + "'/></geometry></visual>"));
-    const RobotDescription robot = read_urdf(file, options);
-    const fs::path path = std::get<MeshFile>(robot.links[0].visual[0].geometry).path;
-    return fs::relative(path, folder.path()).string();
+    return found_mesh(folder, "src/arm/urdf/robot.urdf", name, options);
   };
   EXPECT_EQ(find("c.stl"), "src/arm/urdf/c.stl");
   EXPECT_EQ(find("../a.stl"), "src/arm/a.stl");
@@ -176,6 +160,61 @@ TEST(ReadUrdf, FindsMeshes) {
   }
 }
 
+// As what follows package:// and file:// in ROS, which hands it to a reader of URLs. A path is
+// none.
+TEST(ReadUrdf, FindsFilesWhoseUrlsEscapeCharacters) {
+  const TempDir folder;
+  fs::create_directories(folder.path() / "the arm");
+  folder.write("package.xml", "<package><name>p</name></package>");
+  for (const char* name : {"the arm/a b.stl", "c%20d.stl", "c d.stl", "e%2.stl"}) {
+    folder.write(name, "");
+  }
+  const auto find = [&](const std::string& name) { return found_mesh(folder, "robot.urdf", name); };
+  EXPECT_EQ(find("package://p/the%20arm/a%20b.stl"), "the arm/a b.stl");
+  EXPECT_EQ(find("package://p/the arm/%61 b.stl"), "the arm/a b.stl");
+  EXPECT_EQ(find("file://" + folder.path().string() + "/the%20arm/a%20b.stl"), "the arm/a b.stl");
+  EXPECT_EQ(find("package://p/c%20d.stl"), "c%20d.stl");
+  EXPECT_EQ(find("package://p/e%2.stl"), "e%2.stl");
+  for (const char* missing : {"the%20arm/a%20b.stl", "package://p/the%20arm/a%2", "package://p/%",
+                              "package://p/c d.stl%00", "package://p/c%2gd.stl"}) {
+    EXPECT_THROW(find(missing), Error) << missing;
+  }
+}
+
+// A point of contact and a flat box are held by what is read; what stands for no shape is not seen.
+TEST(ReadUrdf, WidensShapesWithoutExtent) {
+  const RobotDescription robot = read_text(link_of(R"(
+      <visual> <geometry> <box size="0 0 0"/> </geometry> </visual>
+      <visual> <geometry> <sphere radius="0.0"/> </geometry> </visual>
+      <visual> <geometry> <box size="1 0 2"/> </geometry> </visual>
+      <visual> <geometry> <sphere radius="1e-6"/> </geometry> </visual>
+      <collision> <origin xyz="1 2 3"/> <geometry> <sphere radius="0"/> </geometry> </collision>
+      <collision> <geometry> <cylinder radius="0" length="0"/> </geometry> </collision>)"));
+  const LinkDescription& link = robot.links[0];
+  ASSERT_EQ(link.visual.size(), 2U);
+  const auto solid = [](const LinkShape& shape) { return std::get<Primitive>(shape.geometry); };
+  EXPECT_EQ(std::get<Box>(solid(link.visual[0])).size, Eigen::Vector3d(1, 1e-6, 2));
+  EXPECT_EQ(std::get<SolidSphere>(solid(link.visual[1])).radius, 1e-6);
+  ASSERT_EQ(link.collision.size(), 2U);
+  EXPECT_EQ(std::get<SolidSphere>(solid(link.collision[0])).radius, 1e-6);
+  EXPECT_EQ(link.collision[0].link_from_shape.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(std::get<Cylinder>(solid(link.collision[1])).radius, 1e-6);
+  EXPECT_EQ(std::get<Cylinder>(solid(link.collision[1])).length, 1e-6);
+}
+
+// Where published robots have more than URDF knows.
+TEST(ReadUrdf, LeavesOutWhatMeansNothing) {
+  EXPECT_EQ(
+      read_text(arm_of("continuous", "<axis rpy='0 0 0' xyz='0 1 0'/>")).model.joints()[0].axis,
+      Eigen::Vector3d::UnitY());
+  EXPECT_EQ(read_text(arm_of("fixed", "<axis xzy='0 0 1'/>")).model.joints().size(), 1U);
+  const RobotDescription robot = read_text(link_of(
+      "<collision><geometry><sphere radius='1'/><drake:declare_convex/></geometry></collision>"
+      "<visual><geometry><sphere radius='2'/><material name='grey'/></geometry></visual>"));
+  EXPECT_EQ(robot.links[0].collision.size(), 1U);
+  EXPECT_EQ(robot.links[0].visual.size(), 1U);
+}
+
 TEST(ReadUrdf, KeepsMeshesThatAreMissingIfTold) {
   const UrdfOptions options{.require_visual_meshes = false};
   const UrdfOptions other{.require_collision_meshes = false};
@@ -194,17 +233,12 @@ TEST(ReadUrdf, KeepsMeshesThatAreMissingIfTold) {
   }
 }
 
-struct BadFile {
-  std::string text;
-  std::vector<std::string> reasons;
-};
-
 TEST(ReadUrdf, RefusesBadFiles) {
   const std::string limit = "<limit effort='1' velocity='1' lower='-1' upper='1'/>";
   const auto shape = [](const std::string& tag, const std::string& geometry) {
     return link_of("<" + tag + "><geometry>" + geometry + "</geometry></" + tag + ">");
   };
-  const std::vector<BadFile> files = {
+  const std::vector<BadText> files = {
       {"", {"not XML"}},
       {"<robot name='r'>", {"line 1", "not XML"}},
       {"<robot name='r'><link name='a'/>\n<link name='b</robot>", {"not XML"}},
@@ -307,13 +341,7 @@ TEST(ReadUrdf, RefusesBadFiles) {
       {shape("visual", "<mesh filename='x.stl' scale='1 0 1'/>"), {"base", "scale is zero"}},
       {shape("visual", "<mesh filename='package://p/x.stl'/>"), {"base", "package://p"}},
   };
-  for (const BadFile& file : files) {
-    const std::string refusal = refusal_of(file.text);
-    for (const std::string& reason : file.reasons) {
-      EXPECT_NE(refusal.find(reason), std::string::npos)
-          << file.text << "\nis refused because: " << refusal << "\nand not: " << reason;
-    }
-  }
+  expect_refusals(files, read_file);
   EXPECT_THROW(read_urdf("no such file.urdf"), Error);
 }
 
@@ -339,7 +367,8 @@ TEST(ReadUrdf, NamesTheLine) {
             joint("j", "b", "c"),
         shape("<sphere radius='-1'/>"), shape("<mesh filename='x.stl'/>"),
         shape("<mesh filename='x.stl' scale='1 1 0'/>")}) {
-    const std::string refusal = refusal_of("<?xml version='1.0'?>\n" + robot_of(elements));
+    const std::string refusal =
+        refusal_of("<?xml version='1.0'?>\n" + robot_of(elements), read_file);
     EXPECT_TRUE(refusal.starts_with("line 3: ")) << refusal;
   }
 }
@@ -348,21 +377,8 @@ TEST(ReadUrdf, NamesTheLine) {
 TEST(ReadUrdf, RefusesElementsWithinElements) {
   std::string text;
   for (int i = 0; i < 100000; ++i) text += "<robot name='r'>";
-  EXPECT_NE(refusal_of(text).find("line 1: elements are nested too deep"), std::string::npos);
-}
-
-TEST(ReadUrdf, TakesALongChain) {
-  std::string text = "<link name='l0'/>";
-  for (int i = 1; i <= 300; ++i) {
-    const std::string n = std::to_string(i);
-    text += "<link name='l" + n + "'/><joint name='j" + n + "' type='continuous'><parent link='l" +
-            std::to_string(i - 1) + "'/><child link='l" + n + "'/>";
-    if (i > 1) text += "<mimic joint='j" + std::to_string(i - 1) + "' multiplier='-1'/>";
-    text += "</joint>";
-  }
-  const RobotDescription robot = read_text(robot_of(text));
-  EXPECT_EQ(robot.model.variable_count(), 1);
-  EXPECT_EQ(robot.model.joints()[299].multiplier, -1.0);
+  EXPECT_NE(refusal_of(text, read_file).find("line 1: elements are nested too deep"),
+            std::string::npos);
 }
 
 // In time that grows nearly as the file does.
@@ -392,6 +408,58 @@ TEST(ReadUrdf, ReadsNumbersInAnyLocale) {
   const LinkShape& shape = robot.links[0].visual[0];
   EXPECT_EQ(shape.link_from_shape.translation(), Eigen::Vector3d(0.5, 1.5e-3, 2.0));
   EXPECT_EQ(std::get<SolidSphere>(std::get<Primitive>(shape.geometry)).radius, 0.25);
+}
+
+// Robots whose URDF the program xacro makes: a stand-in for it on the PATH.
+class Xacro : public ::testing::Test {
+ protected:
+  void SetUp() override { path_ = std::getenv("PATH"); }
+  void TearDown() override { ::setenv("PATH", path_.c_str(), 1); }
+
+  // Writes this as the program xacro, which is found before any other.
+  void install(const std::string& script) {
+    fs::create_directory(folder_.path() / "bin");
+    const fs::path program = folder_.write("bin/xacro", "#!/bin/sh\n" + script);
+    fs::permissions(program, fs::perms::owner_all);
+    ::setenv("PATH", (program.parent_path().string() + ":" + path_).c_str(), 1);
+  }
+  void expect_refusal(const fs::path& file, const std::string& reason) {
+    const std::string found = reason_of([&] { read_urdf(file); }, file.string());
+    EXPECT_NE(found.find(reason), std::string::npos) << found;
+  }
+
+  TempDir folder_;
+
+ private:
+  std::string path_;
+};
+
+// The script writes what follows the first line of the file it is given.
+TEST_F(Xacro, WhatItMakesIsRead) {
+  install("tail -n +2 \"$1\"\n");
+  const std::string urdf =
+      "<robot name='r'><link name='a'><visual><geometry><mesh filename='a.stl'/></geometry>"
+      "</visual></link></robot>\n";
+  const fs::path file = folder_.write("arm.urdf.xacro", "a line for the script\n" + urdf);
+  folder_.write("a.stl", "");
+  const RobotDescription robot = read_urdf(file);
+  EXPECT_EQ(robot.name, "r");
+  // A path from the folder of the file that was named.
+  ASSERT_EQ(robot.links.at(0).visual.size(), 1U);
+  EXPECT_EQ(read_urdf(fs::relative(file)).name, "r");
+}
+
+TEST_F(Xacro, WhatFailsNamesTheFile) {
+  const fs::path file = folder_.write("arm.urdf.xacro", "<robot name='r'/>");
+  install("exit 3\n");
+  expect_refusal(file, "xacro makes no URDF of it (exit code 3)");
+  install("kill -TERM $$\n");
+  expect_refusal(file, "xacro was ended by a signal");
+  install("true\n");
+  expect_refusal(file, "not XML");
+  ::setenv("PATH", folder_.path().c_str(), 1);
+  expect_refusal(file,
+                 "needs the program xacro, which makes a URDF of it and cannot be run: No such");
 }
 
 }  // namespace

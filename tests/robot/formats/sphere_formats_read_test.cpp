@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/error.h"
 #include "robot/formats/sphere_formats.h"
 #include "tests/robot/formats/sphere_sets.h"
+#include "tests/robot/refusals.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
 #include "tests/support/random.h"
@@ -24,34 +24,47 @@ namespace {
 using Buffers = std::map<std::string, double>;
 using Rational = boost::multiprecision::cpp_rational;
 
-RobotSpheres read(const std::string& text, const SphereReadOptions& options = {}) {
+SphereFormatFile read_file(const std::string& text, const SphereReadOptions& options = {}) {
   const test::TempDir folder;
-  return read_robot_spheres(folder.write("input", text), options).spheres;
+  return read_robot_spheres(folder.write("input", text), options);
+}
+
+RobotSpheres read(const std::string& text, const SphereReadOptions& options = {}) {
+  return read_file(text, options).spheres;
 }
 
 // No coordinate and no radius is like another.
 const std::vector<Sphere> kTwo = {{{1, -2, 3}, 0.5}, {{4, 5, -6}, 0.75}};
 
 TEST(ReadSpheres, OfOneMesh) {
-  const auto expect_two = [](const std::string& text, std::optional<std::size_t> level = {}) {
-    const RobotSpheres read_spheres = read(text, {.link = "arm", .level = level});
-    EXPECT_EQ(difference(read_spheres.links, {{"arm", kTwo}}), "") << text;
+  const auto expect_two = [](SphereFormat format, const std::string& text,
+                             std::optional<std::size_t> level = {}) {
+    const SphereFormatFile file = read_file(text, {.link = "arm", .level = level});
+    EXPECT_EQ(file.format, format);
+    EXPECT_EQ(difference(file.spheres.links, {{"arm", kTwo}}), "") << text;
+    return file.spheres.switched_off;
   };
-  expect_two(R"({"centers": [[1, -2, 3], [4, 5, -6]], "radii": [0.5, 0.75]})");
-  expect_two(R"([{"spheres": [{"origin": [7, 8, 9], "radius": 9}]}, {"spheres": [
-    {"origin": [1, -2, 3], "radius": 0.5}, {"origin": [4, 5, -6], "radius": 0.75}]}])");
-  expect_two(R"({"format": "spherule-spheres", "version": 1, "spheres": [
+  const std::string morphit = R"({"centers": [[1, -2, 3], [4, 5, -6]], "radii": [0.5, 0.75])";
+  expect_two(SphereFormat::kMorphit, morphit + "}");
+  expect_two(SphereFormat::kMorphit, morphit + R"(, "masses": [1, 2], "num_spheres": 2})");
+  const std::string foam = R"([{"spheres": [{"origin": [7, 8, 9], "radius": 9}]}, {"spheres": [
+    {"origin": [1, -2, 3], "radius": 0.5}, {"origin": [4, 5, -6], "radius": 0.75},
+    {"origin": [3, 0, 0], "radius": -1}]}])";
+  EXPECT_EQ(expect_two(SphereFormat::kFoam, foam), 1U);
+  EXPECT_EQ(read(foam, {.level = 0}).links[0].spheres[0], (Sphere{{7, 8, 9}, 9}));
+  expect_two(SphereFormat::kSphereFile, R"({"format": "spherule-spheres", "version": 1, "spheres": [
     {"center": [1, -2, 3], "radius": 0.5}, {"center": [4, 5, -6], "radius": 0.75}]})");
   // Three children to a node, of which one is not used, and a level below.
   const std::string tree =
-      "3 3\n0 0 0 9 1\n1 -2 3 0.5 1\n0 0 0 -1 0\n4 5 -6 0.75 1\n"
+      "3 3\n0 0 0 9 1\n1 -2 3 0.5 1 0 0 0 0 0\n0 0 0 -1 0\n4 5 -6 0.75 1\n"
       "1 1 1 8 1\n1 1 1 8 1\n1 1 1 8 1\n0 0 0 -1 0\n0 0 0 -1 0\n0 0 0 -1 0\n"
       "1 1 1 8 1\n1 1 1 8 1\n1 1 1 8 1\n";
-  expect_two(tree, 1);
+  EXPECT_EQ(expect_two(SphereFormat::kBradshaw, tree + "Level 1\n", 1), 0U);
   EXPECT_EQ(read(tree).links[0].spheres.size(), 6U);
+  EXPECT_EQ(read(tree, {.level = 0}).links[0].spheres[0].radius, 9.0);
   std::string old = tree;
   std::replace(old.begin(), old.end(), '\n', '\r');
-  expect_two(old, 1);
+  expect_two(SphereFormat::kBradshaw, old, 1);
 }
 
 TEST(ReadSpheres, OfOneMeshAreInMetres) {
@@ -60,50 +73,50 @@ TEST(ReadSpheres, OfOneMeshAreInMetres) {
            R"(}, "spheres": [{"center": [0, 0, 0], "radius": 1}]})";
   };
   const auto refusal = [&](const std::string& units) {
-    try {
-      read(in(units));
-    } catch (const Error& error) {
-      return error.reason();
-    }
-    return std::string("none");
+    return test::reason_of([&] { read(in(units)); });
   };
-  EXPECT_EQ(refusal(R"("m")"), "none");
+  EXPECT_EQ(refusal(R"("m")"), "nothing is wrong");
   EXPECT_TRUE(refusal(R"("mm")").starts_with("has its lengths in 'mm'"));
   EXPECT_TRUE(refusal("7").starts_with("has its lengths in an unknown unit"));
 }
 
 TEST(ReadSpheres, ByLinks) {
-  const auto expect_two = [](const std::string& text) {
-    EXPECT_EQ(difference(read(text).links, {{"a", kTwo}, {"b", {}}}), "") << text;
+  const auto expect_two = [](SphereFormat format, const std::string& text) {
+    const SphereFormatFile file = read_file(text);
+    EXPECT_EQ(file.format, format);
+    EXPECT_EQ(difference(file.spheres.links, {{"a", kTwo}, {"b", {}}}), "") << text;
   };
   // A mark of the order of bytes may stand before anything.
-  expect_two(
-      "\xef\xbb\xbf"
-      R"({"a": {"centers": [[1, -2, 3], [4, 5, -6]], "radii": [0.5, 0.75]},
+  expect_two(SphereFormat::kBallpark,
+             "\xef\xbb\xbf"
+             R"({"a": {"centers": [[1, -2, 3], [4, 5, -6]], "radii": [0.5, 0.75]},
                  "b": {"centers": [], "radii": []}})");
-  expect_two(R"({"a": [{"spheres": [{"origin": [1, -2, 3], "radius": 0.5},
+  expect_two(SphereFormat::kFoam, R"({"a": [{"spheres": [{"origin": [1, -2, 3], "radius": 0.5},
     {"origin": [4, 5, -6], "radius": 0.75}]}], "b": [{"spheres": []}]})");
-  expect_two(R"({"a": {"BiggesetSphere": [0, 0, 0, 9],
+  const std::string irmv = R"({"a": {"BiggesetSphere": [0, 0, 0, 9],
     "SubSpheres": {"r0": [1, -2, 3, 0.5], "r1": [4, 5, -6, 0.75]}},
-    "b": {"BiggesetSphere": [0, 0, 0, 9], "SubSpheres": {}}})");
-  expect_two(R"(<robot name="r"><link name="a">
+    "b": {"BiggesetSphere": [0, 0, 0, 9], "SubSpheres": {}}})";
+  expect_two(SphereFormat::kIrmv, irmv);
+  EXPECT_EQ(read(irmv, {.level = 0}).links[0].spheres[0].radius, 9.0);
+  expect_two(SphereFormat::kUrdf, R"(<robot name="r"><link name="a">
     <collision><origin xyz="1 -2 3" rpy="1 2 3"/><geometry><sphere radius="0.5"/></geometry>
     </collision><collision><origin xyz="4 5 -6"/><geometry><sphere radius="0.75"/></geometry>
     </collision></link><link name="b"/></robot>)");
-  expect_two(R"(<robot name="r"><link_sphere_approximation link="a">
+  expect_two(SphereFormat::kSrdf, R"(<robot name="r"><link_sphere_approximation link="a">
     <sphere center="1 -2 3" radius="0.5"/><sphere center="4 5 -6" radius="0.75"/>
     </link_sphere_approximation><link_sphere_approximation link="b"/></robot>)");
   const std::string yaml =
       "a:\n      - {center: [1, -2, 3], radius: 0.5}\n"
       "      - {center: [4, 5, -6], radius: 0.75}\n      b: []\n";
-  expect_two("robot_cfg:\n  kinematics:\n    collision_spheres:\n      " + yaml);
-  expect_two("collision_spheres:\n      " + yaml);
+  expect_two(SphereFormat::kCurobo,
+             "robot_cfg:\n  kinematics:\n    collision_spheres:\n      " + yaml);
+  expect_two(SphereFormat::kCurobo, "collision_spheres:\n      " + yaml);
   // Collision checks use the geometry that is named, wherever it stands.
-  expect_two(
-      "format: xrdf\nformat_version: 1.0\ncollision: {geometry: fine}\ngeometry:\n"
-      "  coarse: {spheres: {c: [{center: [0, 0, 0], radius: 9}]}}\n"
-      "  fine:\n    spheres:\n      " +
-      yaml);
+  expect_two(SphereFormat::kXrdf,
+             "format: xrdf\nformat_version: 1.0\ncollision: {geometry: fine}\ngeometry:\n"
+             "  coarse: {spheres: {c: [{center: [0, 0, 0], radius: 9}]}}\n"
+             "  fine:\n    spheres:\n      " +
+                 yaml);
 }
 
 TEST(ReadSpheres, NamesPairsAndBuffers) {
@@ -278,16 +291,6 @@ TEST(PublishedSpheres, AreReadAsTheyAre) {
     write_robot_spheres(file.spheres, file.format, {.urdf = path, .original = path}, copy);
     EXPECT_EQ(difference(read_robot_spheres(copy).spheres.links, file.spheres.links), "");
   }
-}
-
-TEST(PublishedSpheres, VampAndFoamShipTheSame) {
-  const auto models = test::models_dir();
-  if (!models) GTEST_SKIP() << "SPHERULE_MODELS is not set";
-  const auto folder = *models / "robots/franka_panda/peer_spheres";
-  EXPECT_EQ(
-      difference(read_robot_spheres(folder / "vamp_panda_spherized.urdf").spheres.links,
-                 read_robot_spheres(folder / "foam_smaller_panda_spherized.urdf").spheres.links),
-      "");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/formats/sphere_formats.h"
 
-#include "base/error.h"
 #include "base/files.h"
 #include "robot/formats/sphere_documents.h"
 #include "tests/robot/formats/sphere_sets.h"
@@ -89,19 +88,6 @@ TEST_F(SphereFormats, OurOwnFormatMarksAnInterruptedSearch) {
   }
 }
 
-TEST_F(SphereFormats, ManySpheres) {
-  test::Random random(12);
-  RobotSpheres spheres{.robot = "many", .links = {{"a", {}}, {"b", {}}}};
-  for (int k = 0; k < test::effort(2000, 300); ++k) {
-    spheres.links[random.index(2)].spheres.push_back({random.direction(), random.unit() + 1e-9});
-  }
-  for (const SphereFormat format : kWritten) {
-    write_robot_spheres(spheres, format, context_for(spheres), file("out"));
-    EXPECT_EQ(difference(read_robot_spheres(file("out")).spheres.links, spheres.links), "")
-        << name_of(format);
-  }
-}
-
 TEST_F(SphereFormats, BuffersForAllAndForEach) {
   RobotSpheres spheres{.robot = "r", .links = {{"a", {{{1, 2, 3}, 0.5}}}, {"b", {}}}};
   spheres.collision_buffer = -0.003;
@@ -167,19 +153,14 @@ TEST_F(SphereFormats, CuroboHasWhatItsUsersNeed) {
 TEST_F(SphereFormats, UrdfKeepsTheRestAndFindsItsMeshes) {
   const RobotSpheres spheres{.robot = "r", .links = {{"a", {{{1, 2, 3}, 0.5}}}}};
   fs::create_directory(file("out"));
-  const auto urdf = folder_.write(
-      "r.urdf",
-      "<?xml version=\"1.0\"?>\n<!-- head --><robot name=\"r\" xmlns:x=\"y\"><link "
-      "name=\"a\"><inertial/>"
-      "<visual><geometry><mesh filename=\"m/a.dae\"/></geometry></visual>"
-      "<visual><geometry><mesh filename=\"file://m/b.dae\"/></geometry></visual>"
-      "<visual><geometry><mesh filename=\"file:///m/c.dae\"/></geometry></visual>"
-      "<collision><geometry><box size=\"1 1 1\"/></geometry></collision><visual "
-      "name=\"last\"/></link>"
-      "<link name=\"b\"><collision><geometry><mesh filename=\"package://p/b.stl\"/></geometry>"
-      "</collision></link><joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child "
-      "link=\"b\"/>"
-      "</joint></robot>");
+  const auto urdf = folder_.write("r.urdf", R"(<?xml version="1.0"?>
+    <!-- head --><robot name="r" xmlns:x="y"><link name="a"><inertial/>
+    <visual><geometry><mesh filename="m/a.dae"/></geometry></visual>
+    <visual><geometry><mesh filename="file://m/b.dae"/></geometry></visual>
+    <visual><geometry><mesh filename="file:///m/c.dae"/></geometry></visual>
+    <collision><geometry><box size="1 1 1"/></geometry></collision><visual name="last"/></link>
+    <link name="b"><collision><geometry><mesh filename="package://p/b.stl"/></geometry></collision>
+    </link><joint name="j" type="revolute"><parent link="a"/><child link="b"/></joint></robot>)");
   write_robot_spheres(spheres, SphereFormat::kUrdf, {.urdf = urdf}, file("out/s.urdf"));
   const std::string text = read_file(file("out/s.urdf"));
   EXPECT_NE(text.find("<!-- head -->"), std::string::npos);
@@ -226,22 +207,17 @@ TEST_F(SphereFormats, SpheresOnFixedJointsAreMovedOutward) {
 }
 
 TEST_F(SphereFormats, SpheresThatAreLinksBelongToTheParent) {
-  const std::string text =
-      "<robot name=\"r\"><link name=\"a\"><visual><geometry><mesh filename=\"a.stl\"/></geometry>"
-      "</visual></link><link name=\"b_sphere1\"/>"
-      "<link name=\"a_sphere1\"><collision><geometry><sphere "
-      "radius=\"0.5\"/></geometry></collision></link>"
-      "<link name=\"a_sphere2\"><collision><origin xyz=\"1 0 0\"/><geometry><sphere "
-      "radius=\"0.25\"/>"
-      "</geometry></collision></link>"
-      "<link name=\"a_spherex\"><collision><geometry><sphere "
-      "radius=\"7\"/></geometry></collision></link>"
-      "<joint name=\"1\" type=\"fixed\"><parent link=\"a\"/><child link=\"a_sphere1\"/>"
-      "<origin xyz=\"1 2 3\" rpy=\"1 1 1\"/></joint>"
-      "<joint name=\"2\" type=\"fixed\"><parent link=\"a\"/><child link=\"a_sphere2\"/>"
-      "<origin xyz=\"0 0 1\" rpy=\"0 0 1.5707963267948966\"/></joint>"
-      "<joint name=\"3\" type=\"fixed\"><parent link=\"a\"/><child "
-      "link=\"a_spherex\"/></joint></robot>";
+  const std::string text = R"(<robot name="r"><link name="a"><visual><geometry>
+    <mesh filename="a.stl"/></geometry></visual></link><link name="b_sphere1"/>
+    <link name="a_sphere1"><collision><geometry><sphere radius="0.5"/></geometry></collision></link>
+    <link name="a_sphere2"><collision><origin xyz="1 0 0"/><geometry><sphere radius="0.25"/>
+    </geometry></collision></link>
+    <link name="a_spherex"><collision><geometry><sphere radius="7"/></geometry></collision></link>
+    <joint name="1" type="fixed"><parent link="a"/><child link="a_sphere1"/>
+    <origin xyz="1 2 3" rpy="1 1 1"/></joint>
+    <joint name="2" type="fixed"><parent link="a"/><child link="a_sphere2"/>
+    <origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/></joint>
+    <joint name="3" type="fixed"><parent link="a"/><child link="a_spherex"/></joint></robot>)";
   const auto path = folder_.write("m.urdf", text);
   const RobotSpheres read = read_robot_spheres(path).spheres;
   ASSERT_EQ(read.links.size(), 3u);  // a, b_sphere1, a_spherex

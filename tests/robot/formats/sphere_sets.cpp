@@ -3,6 +3,9 @@
 
 #include <cstring>
 #include <limits>
+#include <regex>
+#include <sstream>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -37,98 +40,41 @@ Sphere random_sphere(test::Random& random) {
   return sphere;
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
+std::string escaped(std::string text) {
+  for (const auto& [from, to] : {std::pair("&", "&amp;"), {"<", "&lt;"}, {"\"", "&quot;"}}) {
+    text = std::regex_replace(text, std::regex(from), to);
   }
-  return result;
+  return text;
 }
 
 bool same_bits(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-}  // namespace
-
-const std::vector<std::string>& awkward_names() {
-  static const std::vector<std::string> kNames = {"panda_link0",
-                                                  "two words",
-                                                  " led and trailed ",
-                                                  "quote\"s",
-                                                  "it's",
-                                                  "a: b",
-                                                  "a #b",
-                                                  "#b",
-                                                  "- a",
-                                                  "null",
-                                                  "~",
-                                                  "yes",
-                                                  "1.5",
-                                                  "0x1F",
-                                                  ".inf",
-                                                  "1e3",
-                                                  "<<",
-                                                  "{a}",
-                                                  "[b, c]",
-                                                  "*anchor",
-                                                  "&anchor",
-                                                  "!tag",
-                                                  "%directive",
-                                                  "|",
-                                                  ">",
-                                                  "@at",
-                                                  "`tick`",
-                                                  "back\\slash",
-                                                  "\\u0041",
-                                                  "a/b",
-                                                  "Gelenk\xc3\xa4rm",
-                                                  "\xe6\x9c\xba\xe5\x99\xa8\xe4\xba\xba",
-                                                  "\xf0\x9f\xa4\x96",
-                                                  "a\xe2\x80\xa8"
-                                                  "b",
-                                                  "&amp;",
-                                                  "<b>",
-                                                  "a=b",
-                                                  "?",
-                                                  ":",
-                                                  "---",
-                                                  "format",
-                                                  "centers",
-                                                  "radii",
-                                                  "robot_cfg",
-                                                  "collision_spheres",
-                                                  "a_sphere1",
-                                                  "link,with,commas",
-                                                  "0",
-                                                  "true",
-                                                  "a\xc2\xa0"
-                                                  "b",
-                                                  "x:"};
-  return kNames;
+// Names that a format has to quote, escape or leave alone.
+std::vector<std::string> awkward_names() {
+  std::istringstream names(
+      "panda_link0$two words$ led and trailed $quote\"s$it's$a: b$a #b$#b$- a$null$~$yes$1.5$0x1F$"
+      ".inf$1e3$<<${a}$[b, c]$*anchor$&anchor$!tag$%directive$|$>$@at$`tick`$back\\slash$\\u0041$"
+      "a/b$Gelenk\u00e4rm$\u673a\u5668\u4eba$\U0001F916$a\u2028b$&amp;$<b>$a=b$?$:$---$format$"
+      "centers$radii$robot_cfg$collision_spheres$a_sphere1$link,with,commas$0$true$a\u00a0b$x:");
+  std::vector<std::string> result;
+  for (std::string name; std::getline(names, name, '$');) result.push_back(name);
+  return result;
 }
 
+}  // namespace
+
 RobotSpheres random_spheres(test::Random& random, std::size_t links) {
+  static const std::vector<std::string> names = awkward_names();
   RobotSpheres spheres;
-  spheres.robot = awkward_names()[random.index(awkward_names().size())];
-  const std::size_t first = random.index(awkward_names().size());
+  spheres.robot = names[random.index(names.size())];
+  const std::size_t first = random.index(names.size());
   for (std::size_t i = 0; i < links; ++i) {
     LinkSpheres link;
     const std::size_t which = first + i;
-    link.link = awkward_names()[which % awkward_names().size()];
-    for (std::size_t round = which / awkward_names().size(); round-- > 0;) link.link += "+";
+    link.link = names[which % names.size()];
+    for (std::size_t round = which / names.size(); round-- > 0;) link.link += "+";
     const std::size_t count = random.index(4) == 0 ? 0 : random.index(6);
     for (std::size_t k = 0; k < count; ++k) link.spheres.push_back(random_sphere(random));
     spheres.links.push_back(std::move(link));

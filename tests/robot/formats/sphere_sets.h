@@ -9,10 +9,8 @@
 
 namespace spherule {
 
-// Names that a format has to quote, escape or leave alone.
-const std::vector<std::string>& awkward_names();
-
-// A set of spheres with names of that kind, empty links, tiny and huge numbers, pairs and buffers.
+// A set of spheres with names that a format has to quote, escape or leave alone, empty links, tiny
+// and huge numbers, pairs and buffers.
 RobotSpheres random_spheres(test::Random& random, std::size_t links);
 
 // A URDF with links of these names, each with a mesh to see and one to collide with.

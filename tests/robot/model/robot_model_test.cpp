@@ -5,80 +5,73 @@
 #include "robot/model/kinematics.h"
 #include "robot/model/link_paths.h"
 #include "robot/pairs/allowed_collisions.h"
-#include "spheretree/build.h"
-#include "tests/robot/check/edge_oracle.h"
+#include "tests/robot/check/checked.h"
 #include "tests/robot/path_bounds.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/random_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace spherule::test::link_paths_test {
 namespace {
 
-using internal::Joined;
-using internal::LinkRelations;
-
-// From the joints between two links, one after the other.
-LinkRelations::Relation relation(const RobotModel& robot, int first, int second,
-                                 const std::vector<bool>& has_spheres) {
-  LinkRelations::Relation result;
+// By the joints between two links, one after the other.
+AllowedReason reason_of(const RobotModel& robot, int first, int second) {
   int moving = 0;
+  bool are_neighbours = true;
   int link = first;
   for (const int index : internal::joints_between(robot, first, second)) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
-    if (link != first && has_spheres[static_cast<std::size_t>(link)]) result.are_neighbours = false;
+    const auto& trees = robot.links()[static_cast<std::size_t>(link)].trees;
+    if (link != first && !trees.empty()) are_neighbours = false;
     link = joint.child_link == link ? joint.parent_link : joint.child_link;
     moving += joint.moves() ? 1 : 0;
   }
   EXPECT_EQ(link, second);
-  if (moving > 0) {
-    result.joined = moving == 1 && result.are_neighbours ? Joined::kByOneJoint : Joined::kFurther;
-  }
-  return result;
+  return moving == 0                     ? AllowedReason::kRigid
+         : moving == 1 && are_neighbours ? AllowedReason::kAdjacent
+                                         : AllowedReason::kTested;
 }
 
-TEST(LinkRelations, AreThoseOfTheJointsBetween) {
+TEST(AllowedCollisions, WhatIsJoinedIsAllowed) {
   Random random(401);
-  std::vector<int> counts(3);
-  int apart = 0;
+  std::map<AllowedReason, int> counts;
   for (int n = 0; n < 100; ++n) {
-    const RobotModel robot = random_robot(random, random.whole(0, 12), n % 4 != 0);
-    std::vector<bool> has_spheres;
-    for (std::size_t i = 0; i < robot.links().size(); ++i) {
-      has_spheres.push_back(random.whole(0, 1) == 0);
+    RobotModel robot = random_robot(random, random.whole(0, 12), n % 4 != 0);
+    for (const Link& link : std::vector<Link>(robot.links())) {
+      if (random.coin()) robot.attach(link.name, one_sphere_tree({0, 0, 0}, 0.1));
     }
-    const LinkRelations relations(robot);
-    for (int first = 0; first < static_cast<int>(robot.links().size()); ++first) {
-      const auto related = relations.of(
-          first, [&](int link) { return has_spheres[static_cast<std::size_t>(link)]; });
-      ASSERT_EQ(related.size(), robot.links().size());
-      for (int second = 0; second < static_cast<int>(related.size()); ++second) {
-        const LinkRelations::Relation& found = related[static_cast<std::size_t>(second)];
-        const LinkRelations::Relation expected = relation(robot, first, second, has_spheres);
-        ASSERT_EQ(found.joined, expected.joined) << n << ": " << first << " and " << second;
-        ASSERT_EQ(found.are_neighbours, expected.are_neighbours) << n << ": " << first;
-        ++counts[static_cast<std::size_t>(found.joined)];
-        apart += found.are_neighbours ? 0 : 1;
+    const AllowedCollisions allowed(robot);
+    const int links = static_cast<int>(robot.links().size());
+    for (int first = 0; first < links; ++first) {
+      EXPECT_TRUE(allowed.allows(first, first));
+      for (int second = 0; second < links; ++second) {
+        if (first == second) continue;
+        const AllowedReason expected = reason_of(robot, first, second);
+        ASSERT_EQ(allowed.reason(first, second), expected) << n << ": " << first << ' ' << second;
+        ASSERT_EQ(allowed.allows(first, second), expected != AllowedReason::kTested);
+        ++counts[expected];
       }
     }
   }
-  EXPECT_GT(*std::min_element(counts.begin(), counts.end()), 300);
-  EXPECT_GT(apart, 300);
+  EXPECT_GT(counts[AllowedReason::kRigid], 300);
+  EXPECT_GT(counts[AllowedReason::kAdjacent], 300);
+  EXPECT_GT(counts[AllowedReason::kTested], 300);
 }
 
 // By paths for each pair, these are 9 billion joints.
-TEST(LinkRelations, OfALongChainAreQuadraticInIt) {
+TEST(AllowedCollisions, OfALongChainAreQuadraticInIt) {
   RobotModel robot("link_0");
   for (int i = 1; i < 3000; ++i) {
-    robot.add_link("link_" + std::to_string(i), "link_" + std::to_string(i - 1),
-                   {.type = JointType::kContinuous});
+    robot.add_link("link_" + std::to_string(i), "link_" + std::to_string(i - 1), wheel());
   }
   const AllowedCollisions allowed(robot);
   EXPECT_EQ(allowed.reason(1500, 1501), AllowedReason::kAdjacent);
@@ -98,12 +91,10 @@ TEST(AllowedCollisions, RefuseARobotOfTooManyLinks) {
 
 // The bounds of how fast two points of a robot approach each other, against their distances under
 // forward_kinematics() all along the motion. That the kernels compute the same:
-// plan_bounds_test.cpp.
+// tests/robot/check/plan_test.cpp.
 
 namespace spherule::test::path_reach_test {
 namespace {
-
-using Configuration = std::vector<double>;
 
 struct Body {
   int link;
@@ -137,8 +128,7 @@ TEST(PathReach, BoundsHowDistancesChange) {
     const Body b = random_body(random, robot);
     const bool b_is_static = b.link == 0 && n % 4 < 2;
     const Configuration from = random_configuration(random, robot, 2.0);
-    Configuration to = random_configuration(random, robot, 2.0);
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+    const Configuration to = moved(random_configuration(random, robot, 2.0), from);
     std::vector<int> joints;
     std::vector<double> rates(robot.joints().size());
     std::vector<double> shifts(robot.joints().size());
@@ -188,10 +178,10 @@ TEST(PathReach, BoundsHowDistancesChange) {
 // bound of what its velocity bends by is reached.
 TEST(PathReach, CountsTurnsThatAddUp) {
   RobotModel robot("base");
-  robot.add_link("upper", "base", {.type = JointType::kContinuous});
-  robot.add_link(
-      "lower", "upper",
-      {.type = JointType::kContinuous, .parent_from_joint = Pose::from_translation({1, 0, 0})});
+  robot.add_link("upper", "base", wheel());
+  Joint elbow = wheel();
+  elbow.parent_from_joint = Pose::from_translation({1, 0, 0});
+  robot.add_link("lower", "upper", elbow);
   const std::vector<int> joints = {1, 0};
   const internal::PathReach reach(robot, poses_at_zero(robot), 1e-15, joints, 2, {{1, 0, 0}, 0.0});
   const PathBounds bounds =
@@ -215,15 +205,11 @@ TEST(PathReach, CountsTurnsThatAddUp) {
 namespace spherule::test {
 namespace {
 
-Joint hinge(std::string name) {
-  return {.name = std::move(name), .type = JointType::kRevolute};
-}
-
 TEST(RobotModel, NumbersLinksAndVariables) {
   RobotModel robot("base");
-  EXPECT_EQ(robot.add_link("upper", "base", hinge("shoulder")), 1);
+  EXPECT_EQ(robot.add_link("upper", "base", turning(0.0, 0.0, "shoulder")), 1);
   EXPECT_EQ(robot.add_link("plate", "upper", {.name = "bolt"}), 2);
-  EXPECT_EQ(robot.add_link("lower", "upper", hinge("elbow")), 3);
+  EXPECT_EQ(robot.add_link("lower", "upper", turning(0.0, 0.0, "elbow")), 3);
   EXPECT_EQ(robot.variable_count(), 2);
   EXPECT_EQ(robot.find_link("lower"), 3);
   EXPECT_EQ(robot.find_link("nothing"), -1);
@@ -237,7 +223,7 @@ TEST(RobotModel, NumbersLinksAndVariables) {
 
 TEST(RobotModel, MakesTheAxisAndTheRotationUnit) {
   RobotModel robot("base");
-  Joint joint = hinge("shoulder");
+  Joint joint = turning(0.0, 0.0, "shoulder");
   joint.axis = {1e-200, 2e-200, -2e-200};
   joint.parent_from_joint = Pose(Eigen::Quaterniond(1e200, 0.0, 1e200, 0.0), {1.0, 2.0, 3.0});
   robot.add_link("upper", "base", joint);
@@ -249,17 +235,17 @@ TEST(RobotModel, MakesTheAxisAndTheRotationUnit) {
 
 TEST(RobotModel, RefusesWhatIsNoMechanism) {
   RobotModel robot("base");
-  robot.add_link("upper", "base", hinge("shoulder"));
-  EXPECT_THROW(robot.add_link("upper", "base", hinge("other")), Error);
-  EXPECT_THROW(robot.add_link("base", "upper", hinge("other")), Error);
-  EXPECT_THROW(robot.add_link("lower", "upper", hinge("shoulder")), Error);
-  EXPECT_THROW(robot.add_link("lower", "nothing", hinge("elbow")), Error);
-  Joint joint = hinge("elbow");
+  robot.add_link("upper", "base", turning(0.0, 0.0, "shoulder"));
+  EXPECT_THROW(robot.add_link("upper", "base", turning(0.0, 0.0, "other")), Error);
+  EXPECT_THROW(robot.add_link("base", "upper", turning(0.0, 0.0, "other")), Error);
+  EXPECT_THROW(robot.add_link("lower", "upper", turning(0.0, 0.0, "shoulder")), Error);
+  EXPECT_THROW(robot.add_link("lower", "nothing", turning(0.0, 0.0, "elbow")), Error);
+  Joint joint = turning(0.0, 0.0, "elbow");
   joint.axis = Eigen::Vector3d::Zero();
   EXPECT_THROW(robot.add_link("lower", "upper", joint), Error);
   joint.axis = {1.0, std::numeric_limits<double>::infinity(), 0.0};
   EXPECT_THROW(robot.add_link("lower", "upper", joint), Error);
-  joint = hinge("elbow");
+  joint = turning(0.0, 0.0, "elbow");
   joint.lower = 1.0;
   joint.upper = -1.0;
   EXPECT_THROW(robot.add_link("lower", "upper", joint), Error);
@@ -269,9 +255,7 @@ TEST(RobotModel, RefusesWhatIsNoMechanism) {
   EXPECT_EQ(robot.links().size(), 2u);
   EXPECT_EQ(robot.variable_count(), 1);
 
-  EXPECT_THROW(robot.attach("nothing", std::make_shared<const SphereTree>(
-                                           build_tree(std::vector<Sphere>{Sphere{}}))),
-               Error);
+  EXPECT_THROW(robot.attach("nothing", one_sphere_tree({0, 0, 0}, 0.0)), Error);
   EXPECT_THROW(robot.attach("upper", nullptr), Error);
 }
 

@@ -3,6 +3,7 @@
 
 #include "robot/check/plan_source.h"
 #include "robot/pairs/link_pieces.h"
+#include "tests/robot/check/checked.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 
@@ -20,8 +21,6 @@
 
 namespace spherule::test::free_boxes_test {
 namespace {
-
-using Configuration = std::vector<double>;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -152,9 +151,7 @@ TEST(FreeBoxesQueries, PointsOfFreeEdgesAreFree) {
       free += from != to ? 1 : 0;
       for (int i = 0; i <= 40; ++i) {
         const double t = i / 40.0;
-        Configuration q;
-        for (std::size_t v = 0; v < from.size(); ++v) q.push_back((1.0 - t) * from[v] + t * to[v]);
-        ASSERT_TRUE(tested.boxes.contains(q)) << n << " " << t;
+        ASSERT_TRUE(tested.boxes.contains(on_the_way(from, to, t))) << n << " " << t;
       }
     }
   }
@@ -213,14 +210,6 @@ long double most_along(const std::vector<Vector3d>& points, const Vector3d& dire
   return most / n.norm();
 }
 
-Vector3d direction(Random& random) {
-  Vector3d result;
-  do {
-    result = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
-  } while (result.norm() < 0.1);
-  return result.normalized();
-}
-
 std::vector<Vector3d> points_of(int count, const std::function<Vector3d()>& point) {
   std::vector<Vector3d> points;
   for (int i = 0; i < count; ++i) points.push_back(point());
@@ -229,15 +218,15 @@ std::vector<Vector3d> points_of(int count, const std::function<Vector3d()>& poin
 
 TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
   Random random(83);
-  const auto sphere = [&] { return direction(random); };
-  const auto inside = [&] { return Vector3d(random.between(0, 1) * direction(random)); };
+  const auto sphere = [&] { return random.direction(); };
+  const auto inside = [&] { return Vector3d(random.between(0, 1) * random.direction()); };
   const auto rod = [&] {
     const double angle = random.between(0.0, 6.3);
     return Vector3d(0.05 * std::cos(angle), 0.05 * std::sin(angle), random.whole(0, 40) / 20.0);
   };
   const auto plate = [&] { return Vector3d(random.between(0, 1), random.between(0, 1), 0.25); };
   const auto line = [&] { return Vector3d(random.between(0, 1), 0.5, 0.25); };
-  const auto far = [&] { return Vector3d(direction(random) + Vector3d(1e6, -2e6, 3e6)); };
+  const auto far = [&] { return Vector3d(random.direction() + Vector3d(1e6, -2e6, 3e6)); };
   const std::vector<std::function<Vector3d()>> families{sphere, inside, rod, plate, line, far};
   for (const auto& family : families) {
     const std::vector<Vector3d> points = points_of(effort(3000, 400), family);
@@ -249,10 +238,10 @@ TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
         ASSERT_NE(std::find(points.begin(), points.end(), corner), points.end());
       }
       for (int i = 0; i < effort(2000, 200); ++i) {
-        const Vector3d n = i % 2 == 0 ? direction(random)
+        const Vector3d n = i % 2 == 0 ? random.direction()
                                       : points[static_cast<std::size_t>(
                                             random.whole(0, static_cast<int>(points.size()) - 1))] -
-                                            points.front() + 1e-3 * direction(random);
+                                            points.front() + 1e-3 * random.direction();
         ASSERT_LE(most_along(points, n), most_along(found.corners, n) + found.radius);
       }
     }
@@ -261,17 +250,12 @@ TEST(HullCorners, HoldAllPointsUpToTheirRadius) {
 
 TEST(HullCorners, AreFew) {
   Random random(84);
-  const std::vector<Vector3d> sphere = points_of(5000, [&] { return direction(random); });
+  const std::vector<Vector3d> sphere = points_of(5000, [&] { return random.direction(); });
   EXPECT_LT(hull_corners(sphere, 0.01).corners.size(), 700U);
   EXPECT_LT(hull_corners(sphere, 0.1).corners.size(), 100U);
-}
-
-TEST(HullCorners, OfFewPointsAreAll) {
-  Random random(85);
-  const std::vector<Vector3d> points = points_of(50, [&] { return direction(random); });
-  const HullCorners found = hull_corners(points, 0.5);
-  EXPECT_EQ(found.corners, points);
-  EXPECT_EQ(found.radius, 0.0);
+  const std::vector<Vector3d> few(sphere.begin(), sphere.begin() + 50);
+  EXPECT_EQ(hull_corners(few, 0.5).corners, few);
+  EXPECT_EQ(hull_corners(few, 0.5).radius, 0.0);
 }
 
 }  // namespace

@@ -7,9 +7,10 @@
 #include "robot/model/kinematics.h"
 #include "robot/pairs/link_pieces.h"
 #include "robot/pairs/pair_search.h"
-#include "spheretree/build.h"
 #include "tests/robot/box_robots.h"
+#include "tests/robot/robots.h"
 #include "tests/support/effort.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/rounding_mode.h"
 #include "tests/support/zoo.h"
 
@@ -34,20 +35,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 AlignedBox3d box(const Vector3d& low, const Vector3d& high) {
   return {low, high};
-}
-
-// Half of them at places where boxes end: the limits and halves, quarters, ... between them.
-Configuration random_in_ranges(Random& random, const RobotModel& robot) {
-  Configuration result;
-  for (const int j : robot.variable_joints()) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(j)];
-    const double part =
-        random.whole(0, 1) == 0 ? random.between(0.0, 1.0) : std::ldexp(random.whole(0, 16), -4);
-    double value = joint.lower + (joint.upper - joint.lower) * part;
-    if (joint.type == JointType::kContinuous) value += kTurn * random.whole(-2, 2);
-    result.push_back(value);
-  }
-  return result;
 }
 
 class LinkPairsOfBoxes : public testing::Test {
@@ -116,30 +103,14 @@ TEST_F(LinkPairsOfBoxes, NoneTouchesWhereItIsProvedFree) {
   EXPECT_GT(edges_, proved_ / 10);
 }
 
-// Two bars in a plane: a post of half-width 0.1 at x = 1, and a bar from the origin up to x = 2,
-// 0.02 to each side, turned about z.
-class TwoBars : public testing::Test {
- protected:
-  static BoxRobot bars(double lower, double upper) {
-    BoxRobot robot{RobotModel("post")};
-    robot.model.add_link(
-        "bar", "post",
-        {.name = "turn", .type = JointType::kRevolute, .lower = lower, .upper = upper});
-    robot.add_boxes(0, {box({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1})});
-    robot.add_boxes(1, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
-    return robot;
-  }
-  // At the angle a < 0 the post's corner (0.9, -0.1) is 0.9 sin(-a) - 0.1 cos(a) =
-  // hypot(0.9, 0.1) sin(-a - atan2(0.1, 0.9)) from the bar's middle line; no other corner is
-  // nearer. They touch where that is 0.02.
-  static double contact_angle() {
-    return -(std::asin(0.02 / std::hypot(0.9, 0.1)) + std::atan2(0.1, 0.9));
-  }
-};
+// The angle a < 0 at which a post and a bar, turned about z, touch. The post's corner (0.9, -0.1)
+// is 0.9 sin(-a) - 0.1 cos(a) = hypot(0.9, 0.1) sin(-a - atan2(0.1, 0.9)) from the bar's middle
+// line; no other corner is nearer. They touch where that is 0.02.
+const double kContact = -(std::asin(0.02 / std::hypot(0.9, 0.1)) + std::atan2(0.1, 0.9));
 
-TEST_F(TwoBars, LimitsShortOfContactAreProved) {
-  const double angle = contact_angle();
-  const BoxRobot robot = bars(-2.0, angle - 1e-4);
+TEST(TwoBars, LimitsShortOfContactAreProved) {
+  const double angle = kContact;
+  const BoxRobot robot = post_and_bar(turning(-2.0, angle - 1e-4));
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   ASSERT_EQ(pairs.pairs().size(), 1U);
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
@@ -149,11 +120,10 @@ TEST_F(TwoBars, LimitsShortOfContactAreProved) {
   EXPECT_FALSE(pairs.is_edge_free(0, 1, Configuration{-2.0}, Configuration{angle}));
 }
 
-TEST_F(TwoBars, ContactAtTheLimitAloneIsFound) {
-  const double angle = contact_angle();
-  BoxRobot robot = bars(-2.0, angle + 1e-6);
-  robot.model.add_link("lamp", "post",
-                       {.name = "lean", .type = JointType::kRevolute, .lower = 0.1, .upper = 0.2});
+TEST(TwoBars, ContactAtTheLimitAloneIsFound) {
+  const double angle = kContact;
+  BoxRobot robot = post_and_bar(turning(-2.0, angle + 1e-6));
+  robot.model.add_link("lamp", "post", turning(0.1, 0.2));
   robot.add_boxes(2, {box({0, 0, 5}, {1, 1, 6})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   ASSERT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
@@ -163,8 +133,8 @@ TEST_F(TwoBars, ContactAtTheLimitAloneIsFound) {
   EXPECT_TRUE(pairs.is_free(0, 1, Configuration{angle - 0.01, 0.1}));
 }
 
-TEST_F(TwoBars, AProofThatIsNearGoesOnBeyondTheBoxesOfOthers) {
-  const BoxRobot robot = bars(-2.0, contact_angle() - 1e-4);
+TEST(TwoBars, AProofThatIsNearGoesOnBeyondTheBoxesOfOthers) {
+  const BoxRobot robot = post_and_bar(turning(-2.0, kContact - 1e-4));
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies, {.boxes = 6});
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
   EXPECT_GT(pairs.pairs()[0].searched_boxes, 6U);
@@ -175,19 +145,16 @@ TEST_F(TwoBars, AProofThatIsNearGoesOnBeyondTheBoxesOfOthers) {
 // they can.
 TEST(LinkPairs, AProofThatIsFarEndsWithTheBoxesOfOthers) {
   BoxRobot robot{RobotModel("base")};
-  robot.add_boxes(0, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
+  robot.add_boxes(0, {cube_at({0, 0, 0})});
   std::string parent = "base";
   for (int i = 1; i <= 8; ++i) {
+    Joint joint = turning(-0.75, 0.75);
+    joint.parent_from_joint = Pose::from_translation({i == 1 ? 0.0 : 1.0, 0, 0});
     const std::string link = "link" + std::to_string(i);
-    robot.model.add_link(link, parent,
-                         {.name = "turn" + std::to_string(i),
-                          .type = JointType::kRevolute,
-                          .parent_from_joint = Pose::from_translation({i == 1 ? 0.0 : 1.0, 0, 0}),
-                          .lower = -0.75,
-                          .upper = 0.75});
+    robot.model.add_link(link, parent, joint);
     parent = link;
   }
-  robot.add_boxes(8, {box({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1})});
+  robot.add_boxes(8, {cube_at({1, 0, 0})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies, {.boxes = 20, .samples = 0});
   ASSERT_EQ(pairs.pairs().size(), 1U);
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kUnknown);
@@ -197,19 +164,14 @@ TEST(LinkPairs, AProofThatIsFarEndsWithTheBoxesOfOthers) {
 // A part that slides along an axis of its base; neither has a body yet.
 BoxRobot with_sliding_part(double lower, double upper, const Vector3d& axis = Vector3d::UnitX()) {
   BoxRobot robot{RobotModel("base")};
-  robot.model.add_link("part", "base",
-                       {.name = "slide",
-                        .type = JointType::kPrismatic,
-                        .axis = axis,
-                        .lower = lower,
-                        .upper = upper});
+  robot.model.add_link("part", "base", sliding(lower, upper, "slide", axis));
   return robot;
 }
 
 TEST(LinkPairs, APartInsideAClosedOneTouchesIt) {
   BoxRobot robot = with_sliding_part(-0.5, 3.0);
   robot.add_boxes(0, {box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0})});
-  robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
+  robot.add_boxes(1, {cube_at({0, 0, 0})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   ASSERT_EQ(pairs.pairs()[0].verdict, PairVerdict::kTouching);
   for (double x = -0.5; x <= 1.1; x += 0.01) EXPECT_FALSE(pairs.is_free(0, 1, Configuration{x}));
@@ -239,7 +201,7 @@ TEST(LinkPairs, PiecesProveWhatHullsDoNot) {
   BoxRobot robot = with_sliding_part(-0.5, 0.5);
   robot.add_boxes(
       0, {box({-1.0, 0.2, -0.1}, {1.0, 0.3, 0.1}), box({-1.0, -0.3, -0.1}, {1.0, -0.2, 0.1})});
-  robot.add_boxes(1, {box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})});
+  robot.add_boxes(1, {cube_at({0, 0, 0})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   EXPECT_EQ(pairs.pairs()[0].verdict, PairVerdict::kNever);
 }
@@ -275,10 +237,7 @@ TEST(LinkPairs, CornersThatAreNotKeptCount) {
 }
 
 TEST(LinkPairs, ContinuousJointsTakeEveryTurn) {
-  BoxRobot robot{RobotModel("post")};
-  robot.model.add_link("bar", "post", {.name = "turn", .type = JointType::kContinuous});
-  robot.add_boxes(0, {box({0.9, -0.1, -0.1}, {1.1, 0.1, 0.1})});
-  robot.add_boxes(1, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
+  const BoxRobot robot = post_and_bar(wheel());
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   for (int turns = -3; turns <= 3; ++turns) {
     EXPECT_TRUE(pairs.is_free(0, 1, Configuration{1.0 + kTurn * turns}));
@@ -296,10 +255,10 @@ TEST(LinkPairs, ContinuousJointsTakeEveryTurn) {
 // A lever that follows a wheel at a tenth of its angle comes to the post after two turns.
 TEST(LinkPairs, WhatFollowsAContinuousJointIsProvedForOneTurn) {
   BoxRobot robot{RobotModel("post")};
-  robot.model.add_link("wheel", "post", {.name = "turn", .type = JointType::kContinuous});
-  robot.model.add_link("lever", "post", {.name = "follow", .type = JointType::kContinuous});
+  robot.model.add_link("wheel", "post", wheel("turn"));
+  robot.model.add_link("lever", "post", wheel("follow"));
   robot.model.mimic("follow", "turn", 0.1);
-  robot.add_boxes(0, {box({-0.1, 0.9, -0.1}, {0.1, 1.1, 0.1})});
+  robot.add_boxes(0, {cube_at({0, 1, 0})});
   robot.add_boxes(2, {box({0.0, -0.02, -0.05}, {2.0, 0.02, 0.05})});
   const LinkPairs pairs = prove_link_pairs(robot.model, robot.bodies);
   ASSERT_EQ(pairs.pairs().size(), 1U);
@@ -313,43 +272,10 @@ TEST(LinkPairs, WhatFollowsAContinuousJointIsProvedForOneTurn) {
   EXPECT_FALSE(pairs.is_free(0, 2, touching));
 }
 
-// Ends of edges may stand beyond the ranges by less than points of edges may.
-TEST(LinkPairs, PointsOfFreeEdgesAreFreeUpToTheRim) {
-  const FreeBoxes boxes(
-      {{.index = 0, .lower = -1.0, .upper = 0.9}, {.index = 1, .lower = -100.0, .upper = 100.0}},
-      std::string(1, '\1'));
-  Random random(511);
-  int free = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const auto end = [&] {
-      const double beyond = random.between(-1.0, 1.0) * FreeBoxes::kTolerance;
-      return Configuration{(random.whole(0, 1) == 0 ? -1.0 : 0.9) + beyond,
-                           random.whole(0, 1) == 0 ? -100.0 : 100.0};
-    };
-    const Configuration from = end();
-    const Configuration to = end();
-    if (!boxes.contains_edge(from, to)) continue;
-    ++free;
-    for (int k = 0; k <= 100; ++k) {
-      const double t = 0.01 * k;
-      ASSERT_TRUE(boxes.contains(
-          Configuration{(1.0 - t) * from[0] + t * to[0], (1.0 - t) * from[1] + t * to[1]}))
-          << from[0] << " " << to[0] << " " << t;
-    }
-  }
-  EXPECT_GT(free, 200);
-}
-
 TEST(LinkPairs, SpheresCountAsSolid) {
   RobotModel robot("base");
-  robot.add_link("arm", "base",
-                 {.name = "slide",
-                  .type = JointType::kPrismatic,
-                  .axis = Vector3d::UnitX(),
-                  .lower = 0.0,
-                  .upper = 2.0});
-  const auto sphere =
-      std::make_shared<const SphereTree>(build_tree(std::vector<Sphere>{{Vector3d::Zero(), 0.5}}));
+  robot.add_link("arm", "base", sliding(0.0, 2.0));
+  const auto sphere = one_sphere_tree(Vector3d::Zero(), 0.5);
   const std::vector<LinkBody> bodies{{.link = 0, .spheres = sphere},
                                      {.link = 1, .spheres = sphere}};
   const LinkPairs pairs = prove_link_pairs(robot, bodies);
@@ -389,8 +315,7 @@ TEST(LinkPairs, RefusesWhatItCannotUse) {
   EXPECT_THROW(prove_link_pairs(robot, {}, {.seconds = -1.0}), Error);
   EXPECT_TRUE(prove_link_pairs(robot, {}).pairs().empty());
   expect_rounding_to_nearest_is_needed([&] { prove_link_pairs(robot, {}); }, "prove_link_pairs");
-  const SphereTree tool = build_tree(std::vector<Sphere>{{{0, 0, 0}, 1.0}});
-  const LinkBody held{.link = 0, .spheres = std::make_shared<const SphereTree>(tool)};
+  const LinkBody held{.link = 0, .spheres = one_sphere_tree({0, 0, 0}, 1.0)};
   expect_rounding_to_nearest_is_needed([&] { prove_attached_pairs(robot, {}, held); }, "tool");
 }
 

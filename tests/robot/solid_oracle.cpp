@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/robot/cover/cover_oracle.h"
+#include "tests/robot/solid_oracle.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <variant>
 
@@ -55,27 +56,33 @@ struct PointOf {
   WidePoint operator()(const HalfSpace&) const { return WidePoint::Zero(); }
 };
 
-struct DistanceTo {
-  const WidePoint& p;
+// The nearest point of a solid to one in its frame.
+template <class Real>
+struct Nearest {
+  using Point = Eigen::Matrix<Real, 3, 1>;
+  const Point& p;
 
-  Wide operator()(const Box& box) const {
-    const WidePoint half = box.size.cast<Wide>() / 2;
-    return (p.cwiseAbs() - half).cwiseMax(WidePoint::Zero()).norm();
+  Point operator()(const Box& box) const {
+    const Point half = box.size.cast<Real>() / 2;
+    return p.cwiseMin(half).cwiseMax(-half);
   }
-  Wide operator()(const SolidSphere& sphere) const {
-    return std::max(Wide(0), p.norm() - Wide(sphere.radius));
+  Point operator()(const SolidSphere& sphere) const { return within(p, sphere.radius); }
+  Point operator()(const Cylinder& cylinder) const {
+    const Point side = within({p.x(), p.y(), 0}, cylinder.radius);
+    return {side.x(), side.y(), along_axis(cylinder.length)};
   }
-  Wide operator()(const Cylinder& cylinder) const {
-    const Wide side = std::max(Wide(0), p.head<2>().norm() - Wide(cylinder.radius));
-    const Wide end = std::max(Wide(0), std::abs(p.z()) - Wide(cylinder.length) / 2);
-    return std::hypot(side, end);
+  Point operator()(const Capsule& capsule) const {
+    const Point axis(0, 0, along_axis(capsule.length));
+    return axis + within(p - axis, capsule.radius);
   }
-  Wide operator()(const Capsule& capsule) const {
-    const Wide half = Wide(capsule.length) / 2;
-    const WidePoint axis(0, 0, std::clamp(p.z(), -half, half));
-    return std::max(Wide(0), (p - axis).norm() - Wide(capsule.radius));
+  Point operator()(const HalfSpace&) const { return {p.x(), p.y(), std::min(p.z(), Real(0))}; }
+
+ private:
+  static Point within(const Point& point, Real radius) {
+    const Real length = point.norm();
+    return length > radius ? Point(radius / length * point) : point;
   }
-  Wide operator()(const HalfSpace&) const { return 0; }
+  Real along_axis(Real length) const { return std::clamp(p.z(), -length / 2, length / 2); }
 };
 
 }  // namespace
@@ -115,34 +122,25 @@ WidePoint point_of(const Primitive& primitive, Random& random) {
 }
 
 Wide distance_to(const Primitive& primitive, const WidePoint& point) {
-  return std::visit(DistanceTo{point}, primitive);
+  return (point - std::visit(Nearest<Wide>{point}, primitive)).norm();
 }
 
-RobotDescription random_robot(Random& random, int links) {
-  RobotDescription robot;
-  robot.name = "chain";
-  robot.model = RobotModel("link0");
-  for (int i = 0; i < links; ++i) {
-    LinkDescription link;
-    link.name = "link" + std::to_string(i);
-    if (i > 0) {
-      Joint joint;
-      joint.name = "joint" + std::to_string(i);
-      joint.type = JointType::kRevolute;
-      joint.parent_from_joint = Pose::from_translation({0, 0, 0.2});
-      joint.lower = -1;
-      joint.upper = 1;
-      robot.model.add_link(link.name, "link" + std::to_string(i - 1), joint);
-    }
-    const std::size_t shapes = i % 3 == 1 ? 0 : 1 + random.index(2);
-    for (std::size_t s = 0; s < shapes; ++s) {
-      link.collision.push_back({.name = "",
-                                .link_from_shape = random_pose(random, 0.1),
-                                .geometry = random_primitive(random, 0.2)});
-    }
-    robot.links.push_back(link);
+// The ways between the points, one of each solid, get shorter with every round.
+double distance_between(const Primitive& a, const Pose& world_from_a, const Primitive& b,
+                        const Pose& world_from_b) {
+  const Pose b_from_a = world_from_b.inverse() * world_from_a;
+  const Pose a_from_b = b_from_a.inverse();
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // of a, in its frame
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 3000; ++round) {
+    const Eigen::Vector3d of_a = b_from_a * at;
+    const Eigen::Vector3d of_b = a_from_b * std::visit(Nearest<double>{of_a}, b);
+    at = std::visit(Nearest<double>{of_b}, a);
+    const double distance = (at - of_b).norm();
+    if (distance < 1e-9 || last - distance < 1e-13) return distance;
+    last = distance;
   }
-  return robot;
+  return last;
 }
 
 }  // namespace spherule::test

@@ -3,18 +3,14 @@
 
 #include "collide/solids/primitive.h"
 #include "geometry/pose.h"
-#include "robot/model/robot_model.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Core>
 
-#include <string>
-#include <vector>
-
-// What tests of link meshes and covers hold against: exact shapes, in numbers wide enough that
-// their rounding does not matter, from definitions of their own.
 namespace spherule::test {
 
+// Exact shapes, in numbers wide enough that their rounding does not matter, from definitions of
+// their own: nothing of it is shared with the library.
 using Wide = long double;
 using WidePoint = Eigen::Matrix<Wide, 3, 1>;
 
@@ -27,13 +23,15 @@ WidePoint unmove(const Pose& pose, const WidePoint& point);
 Primitive random_primitive(Random& random, double size);
 Pose random_pose(Random& random, double size);
 
-// A point of the solid primitive: mostly on its surface, often on an edge, a corner or a pole.
+// A point of the solid primitive, but of no half-space: mostly on its surface, often on an edge, a
+// corner or a pole.
 WidePoint point_of(const Primitive& primitive, Random& random);
-// How far outside of the primitive a point lies, 0 within; of a half-space not known.
+// How far outside of the primitive a point lies, 0 within.
 Wide distance_to(const Primitive& primitive, const WidePoint& point);
 
-// A robot of a chain of `links` links with one or two primitives each as collision shapes; every
-// third link from the second on has none.
-RobotDescription random_robot(Random& random, int links);
+// How far two primitives are from each other, by alternating projections. Not below the distance;
+// above it by little, in these tests by less than 1e-4.
+double distance_between(const Primitive& a, const Pose& world_from_a, const Primitive& b,
+                        const Pose& world_from_b);
 
 }  // namespace spherule::test
