@@ -166,7 +166,7 @@ class CompletionTest : public CommandTest {
 
   // What bash offers for the last word of a command line; those before it are split at "=".
   Words offered(const Words& before, const std::string& last) {
-    Words words = joined("spherule", before);
+    Words words = joined(SPHERULE_COMMAND, before);
     words.push_back(last);
     std::string script = "source ./.completion.bash\nCOMP_WORDS=(";
     for (const std::string& word : words) script += " '" + word + "'";
@@ -245,8 +245,10 @@ TEST_F(CompletionTest, FishCompletes) {
       {"manual fi", "fit"},
       {"manual fit --meth", ""}};
   for (const auto& [line, offers] : cases) {
-    Words words = shell("fish --no-config",
-                        "source ./.completion.fish\ncomplete -C 'spherule " + line + "'\n");
+    const std::string folder = std::filesystem::path(SPHERULE_COMMAND).parent_path().string();
+    Words words =
+        shell("fish --no-config", "set PATH " + folder + " $PATH\nsource ./.completion.fish\n" +
+                                      "complete -C 'spherule " + line + "'\n");
     for (std::string& word : words) word = word.substr(0, word.find('\t'));
     std::sort(words.begin(), words.end());
     EXPECT_EQ(words, offers) << line;
@@ -256,7 +258,10 @@ TEST_F(CompletionTest, FishCompletes) {
 TEST_F(CompletionTest, ZshReadsItsScript) {
   if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
   EXPECT_EQ(shell("zsh -f -n", read(".completion.zsh")), Words{});
-  EXPECT_TRUE(has(read(".completion.zsh"), "'*:command:(fit audit "));
+  // What it asks for.
+  EXPECT_EQ(run("completion zsh -- manual fi").out, "words\nfit\n");
+  EXPECT_TRUE(has(run("completion zsh -- fi").out, "words\nfit:Cover a mesh"));
+  EXPECT_EQ(run("completion zsh -- fit --method=pa").out, "words\n--method=paper\n");
 }
 
 class ManualTest : public CommandTest {
