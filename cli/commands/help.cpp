@@ -10,9 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
@@ -22,31 +20,44 @@
 #include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
 namespace spherule {
 namespace {
 
-const CLI::App& inner_command(const CLI::App& around, const std::string& name) {
+const CLI::App& inner_command(const CLI::App& around, const std::string& name,
+                              const char* asked_by) {
   std::vector<std::string> known;
   for (const CLI::App* inner : around.get_subcommands({})) {
     if (inner->get_name() == name && !name.empty()) return *inner;
     known.push_back(inner->get_name());
   }
-  throw Error("help", "there is no command '" + name + "'" + internal::did_you_mean(name, known));
+  throw Error(asked_by, "there is no command '" + name + "'" + internal::did_you_mean(name, known));
 }
 
-void print_help(const CLI::App& app, const std::vector<std::string>& names) {
-  const CLI::App* command = &app;
-  std::string full_name = app.get_name();
-  for (const std::string& name : names) {
-    command = &inner_command(*command, name);
-    full_name += " " + name;
+// The words by which a command is called, and its help.
+struct Page {
+  const CLI::App* command;
+  std::vector<std::string> path;
+
+  std::string name(const std::string& blank) const { return CLI::detail::join(path, blank); }
+  std::string help() const {
+    // App::help() prints that of the command that runs.
+    return command->get_formatter()->make_help(command, name(" "), CLI::AppFormatMode::Normal);
   }
-  // App::help() prints that of the command that runs.
-  std::cout << command->get_formatter()->make_help(command, full_name, CLI::AppFormatMode::Normal);
+  Page inner(const CLI::App& below) const {
+    Page page{&below, path};
+    page.path.push_back(below.get_name());
+    return page;
+  }
+};
+
+Page page_of(const CLI::App& app, const std::vector<std::string>& names, const char* asked_by) {
+  Page page{&app, {app.get_name()}};
+  for (const std::string& name : names) {
+    page = page.inner(inner_command(*page.command, name, asked_by));
+  }
+  return page;
 }
 
 // Text of a manual page, in the macros of man(7), where no character of it means anything to roff.
@@ -82,25 +93,6 @@ std::string roff(const std::string& text) {
   return result;
 }
 
-std::string bold(const std::string& text) {
-  return "\\fB" + roff(text) + "\\fR";
-}
-
-std::string italic(const std::string& text) {
-  return "\\fI" + roff(text) + "\\fR";
-}
-
-// Filled anyway, in lines that a person can read.
-std::string paragraph(const std::string& text) {
-  return roff(wrapped(text, 72)) + "\n";
-}
-
-std::string with_blanks(const std::vector<std::string>& path, char blank) {
-  std::string name;
-  for (const std::string& part : path) name += (name.empty() ? "" : std::string(1, blank)) + part;
-  return name;
-}
-
 // The day that the page is of; builds that are to be repeatable set SOURCE_DATE_EPOCH.
 std::string today() {
   const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
@@ -119,85 +111,48 @@ std::string today() {
   return text.data();
 }
 
-std::string synopsis(const CommandSpecification& command, const std::vector<std::string>& path) {
-  std::string text = bold(with_blanks(path, ' '));
-  if (!command.options.empty()) text += " [" + italic("options") + "]";
-  for (const OptionSpecification& argument : command.arguments) {
-    const std::string name = italic(argument.names.front()) + (argument.is_repeatable ? "..." : "");
-    text += argument.is_required ? " " + name : " [" + name + "]";
+// A line of the help; names of options and commands become tags, their descriptions are filled.
+std::string manual_line(const std::string& line, bool is_example) {
+  if (is_example) return line.empty() ? "" : roff(line) + "\n";
+  if (line.size() < 3 || !line.starts_with("  ") || line[2] == ' ') {
+    return line.empty() ? "" : roff(CLI::detail::trim_copy(line)) + "\n";
   }
-  if (!command.commands.empty()) text += " " + italic("command") + " ...";
-  return text + "\n";
+  const std::size_t end = line.find("  ", 2);
+  const std::string rest = end == line.npos ? "" : CLI::detail::trim_copy(line.substr(end));
+  return ".TP\n\\fB" + roff(line.substr(2, end - 2)) + "\\fR\n" +
+         (rest.empty() ? "" : roff(rest) + "\n");
 }
 
-std::string item(const OptionSpecification& option, bool is_argument) {
-  std::string text = ".TP\n";
-  for (std::size_t i = 0; i < option.names.size(); ++i) {
-    text += (i > 0 ? ", " : "") + (is_argument ? italic : bold)(option.names[i]);
-  }
-  if (!option.value.empty()) text += " " + italic(option.value);
-  if (option.is_repeatable) text += " ...";
-  return text + "\n" + paragraph(full_description(option));
-}
-
-std::string items(const char* section, const std::vector<OptionSpecification>& options,
-                  bool are_arguments) {
-  if (options.empty()) return {};
-  std::string text = std::string(".SH ") + section + "\n";
-  for (const OptionSpecification& option : options) text += item(option, are_arguments);
-  return text;
-}
-
-// The footer of the help: text, exit codes and examples in sections of their own.
-std::string page(const CommandSpecification& command, const std::vector<std::string>& path) {
-  const std::string name = with_blanks(path, '-');
-  std::string title = name;
-  std::transform(title.begin(), title.end(), title.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const FooterParts footer = parts_of(command.footer);
-  std::string text = ".\\\" Made by `spherule manual` from what its commands say of themselves.\n";
-  text += ".TH " + roff(title) + " 1 \"" + today() + "\" \"spherule " SPHERULE_VERSION +
-          "\" \"User Commands\"\n";
-  text += ".SH NAME\n" + roff(name) + " \\- " + roff(command.summary) + "\n";
-  text += ".SH SYNOPSIS\n" + synopsis(command, path);
-  if (!footer.text.empty()) text += ".SH DESCRIPTION\n" + paragraph(footer.text);
-  text += items("ARGUMENTS", command.arguments, true) + items("OPTIONS", command.options, false);
-  if (!command.commands.empty()) {
-    text += ".SH COMMANDS\n";
-    for (const CommandSpecification& inner : command.commands) {
-      text += ".TP\n" + bold(name + "-" + inner.name) + "(1)\n" + paragraph(inner.summary);
+std::string manual_page(const Page& page) {
+  const std::string name = page.name("-");
+  std::string text = ".\\\" Made by `spherule manual` from what its commands say of themselves.\n" +
+                     (".TH " + roff(name)) + " 1 \"" + today() +
+                     "\" \"spherule " SPHERULE_VERSION "\" \"User Commands\"\n.SH NAME\n" +
+                     roff(name) + " \\- " + roff(page.command->get_description()) +
+                     "\n.SH DESCRIPTION\n";
+  std::istringstream help(page.help());
+  std::string section;
+  bool is_after_blank = false;
+  for (std::string line; std::getline(help, line);) {
+    if (line.ends_with(':') && line.find(' ') == line.npos) {
+      section = line;
+      text += ".SH " + roff(line.substr(0, line.size() - 1)) + "\n" +
+              (line == kExamples ? ".nf\n" : "");
+    } else {
+      const bool begins = !line.starts_with(' ') && (is_after_blank || line.starts_with("Usage:") ||
+                                                     line.starts_with(kExitCodes));
+      text += (begins && !line.empty() ? ".PP\n" : "") + manual_line(line, section == kExamples);
     }
+    is_after_blank = line.empty();
   }
-  if (!footer.exit_codes.empty()) text += ".SH EXIT STATUS\n" + paragraph(footer.exit_codes);
-  if (!footer.examples.empty()) {
-    text += ".SH EXAMPLES\n.nf\n" + roff(footer.examples) + ".fi\n";
-  }
-  if (path.size() > 1) {
-    const std::vector<std::string> around(path.begin(), path.end() - 1);
-    text += ".SH SEE ALSO\n" + bold(with_blanks(around, '-')) + "(1)\n";
-  }
-  return text;
+  return text + (section == kExamples ? ".fi\n" : "");
 }
 
-void write_pages(const CommandSpecification& command, std::vector<std::string> path,
-                 const std::filesystem::path& folder) {
-  write_file_atomically(folder / (with_blanks(path, '-') + ".1"), page(command, path));
-  path.emplace_back();
-  for (const CommandSpecification& inner : command.commands) {
-    path.back() = inner.name;
-    write_pages(inner, path, folder);
+void write_pages(const Page& page, const std::filesystem::path& folder) {
+  write_file_atomically(folder / (page.name("-") + ".1"), manual_page(page));
+  for (const CLI::App* inner : page.command->get_subcommands({})) {
+    if (!inner->get_name().empty()) write_pages(page.inner(*inner), folder);
   }
-}
-
-void print_page(const CommandSpecification& all, const std::vector<std::string>& names) {
-  const CommandSpecification* command = &all;
-  std::vector<std::string> path = {all.name};
-  for (const std::string& name : names) {
-    command = find_command(*command, name);
-    if (command == nullptr) throw Error("manual", "there is no command '" + name + "'");
-    path.push_back(name);
-  }
-  std::cout << page(*command, path);
 }
 
 }  // namespace
@@ -209,7 +164,7 @@ void add_help(CLI::App& app, int& exit_code) {
       ->type_name(kCommand);
   command->footer(to_text({.text = "", .exit_codes = "0 done", .examples = {"spherule help fit"}}));
   command->callback([&app, names, &exit_code] {
-    print_help(app, *names);
+    std::cout << page_of(app, *names, "help").help();
     exit_code = kYes;
   });
 }
@@ -226,12 +181,11 @@ void add_manual(CLI::App& app, int& exit_code) {
                            .exit_codes = "0 done",
                            .examples = {"spherule manual fit > fit.1", "spherule manual -o ."}}));
   command->callback([&app, names, folder, &exit_code] {
-    const CommandSpecification all = specification(app);
     if (folder->empty()) {
-      print_page(all, *names);
+      std::cout << manual_page(page_of(app, *names, "manual"));
     } else {
       if (!std::filesystem::is_directory(*folder)) throw Error(*folder, "no such folder");
-      write_uninterrupted([&] { write_pages(all, {all.name}, *folder); });
+      write_uninterrupted([&] { write_pages({&app, {app.get_name()}}, *folder); });
     }
     exit_code = kYes;
   });
