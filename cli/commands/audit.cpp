@@ -24,7 +24,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,8 +36,22 @@ namespace {
 // options refer to it.
 class SolidProof {
  public:
-  SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter);
-  SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external);
+  SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter)
+      : SolidProof(options, has_diameter ? std::optional(place_external_spheres(
+                                               mesh, external_options(options)))
+                                         : std::nullopt) {}
+  SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external)
+      : external_(std::move(external)), zones_(options.zones) {
+    options_.padding = options.padding;
+    options_.threads = options.threads;
+    options_.progress = options.progress;
+    if (!external_) return;
+    options_.external = &*external_;
+    // A file that says how it was fitted was proved at this resolution.
+    options_.resolution = proof_resolution(tightest_error(zones_, options.max_error),
+                                           external_->box.diagonal().norm());
+    options_.zones = zones_;
+  }
   SolidProof(const SolidProof&) = delete;
   SolidProof& operator=(const SolidProof&) = delete;
 
@@ -53,6 +66,7 @@ class SolidProof {
 
 // What the command line of `audit` says.
 struct AuditArguments {
+  const CLI::App* command = nullptr;
   std::vector<std::string> models = {""};
   std::string spheres;
   std::vector<std::string> more;  // as written: further models, and then the spheres
@@ -64,24 +78,6 @@ struct AuditArguments {
   int threads = 0;
   bool json = false;
 };
-
-SolidProof::SolidProof(const TriangleMesh& mesh, const SimplifyOptions& options, bool has_diameter)
-    : SolidProof(options, has_diameter ? std::optional(place_external_spheres(
-                                             mesh, external_options(options)))
-                                       : std::nullopt) {}
-
-SolidProof::SolidProof(const SimplifyOptions& options, std::optional<ExternalSpheres> external)
-    : external_(std::move(external)), zones_(options.zones) {
-  options_.padding = options.padding;
-  options_.threads = options.threads;
-  options_.progress = options.progress;
-  if (!external_) return;
-  options_.external = &*external_;
-  // A file that says how it was fitted was proved at this resolution.
-  options_.resolution =
-      proof_resolution(tightest_error(zones_, options.max_error), external_->box.diagonal().norm());
-  options_.zones = zones_;
-}
 
 // Takes D from the command line, if it is there, in the place of that of the file.
 bool take_min_external(const std::optional<double>& min_external, SimplifyOptions& options) {
@@ -136,7 +132,7 @@ ModelBodies read(const AuditArguments& arguments, const SphereFile& file) {
   take_stored_unit(arguments.spheres, file, reading, unit);
   reading.units = unit.units;
   const std::vector<ModelUnit> units = model_units(arguments.models, unit);
-  arguments.lengths.convert(length_context(arguments.models, units));
+  arguments.lengths.convert(length_context(arguments.models.front(), units.front()));
   return read_bodies(arguments.models, units, reading, split);
 }
 
@@ -216,50 +212,45 @@ class Auditor {
   ProgressBar bar_;
 };
 
-std::string text_of(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-std::string text_of(const Eigen::Vector3d& point) {
-  return "(" + text_of(point.x()) + ", " + text_of(point.y()) + ", " + text_of(point.z()) + ")";
-}
-
-void print(std::span<const BodyVerdict> verdicts, bool as_json) {
+Json bodies_json(std::span<const BodyVerdict> verdicts) {
   Json list = Json::array();
-  std::vector<std::vector<std::string>> rows = {
-      {"body", "spheres", "covered", "none deeper than", "protrusion", ""}};
-  std::vector<std::vector<std::string>> places;
-  std::size_t covered = 0;
+  bool covered = true;
   for (const BodyVerdict& verdict : verdicts) {
     const CertificateRecord& record = verdict.certificate;
-    const std::optional<double>& protrusion = record.protrusion_over_simplified_max;
-    covered += record.covered ? 1 : 0;
-    rows.push_back({verdict.name, std::to_string(record.sphere_count),
-                    record.covered ? "yes (proved)" : "no", text_of(record.uncovered_depth_upper),
-                    protrusion ? text_of(*protrusion) : "-", verdict.note});
+    covered = covered && record.covered;
     list.push_back(
         {{"name", verdict.name},
          {"covered", record.covered},
          {"uncovered_depth",
-          {to_json(record.uncovered_depth_lower), to_json(record.uncovered_depth_upper)}},
-         {"protrusion_over_simplified_max", protrusion ? to_json(*protrusion) : Json(nullptr)},
+          to_json(Bounds{record.uncovered_depth_lower, record.uncovered_depth_upper})},
+         {"protrusion_over_simplified_max", to_json(record.protrusion_over_simplified_max)},
          {"sphere_count", record.sphere_count},
          {"note", verdict.note}});
-    if (!verdict.deepest_leak) continue;
-    list.back()["deepest_leak"] = to_json(*verdict.deepest_leak);
-    places.push_back({"  " + verdict.name, text_of(*verdict.deepest_leak)});
+    if (verdict.deepest_leak) {
+      list.back()["deepest_leak"] = to_json(*verdict.deepest_leak);
+    }
   }
-  if (as_json) {
-    std::cout << to_text(Json{{"covered", covered == verdicts.size()}, {"bodies", list}});
-    return;
+  return {{"covered", covered}, {"bodies", list}};
+}
+
+std::string describe_bodies(const Json& bodies) {
+  std::string text = table(bodies, {{"body", "{name}"},
+                                    {"spheres", "{sphere_count}"},
+                                    {"covered", "{covered:yes (proved)|no}"},
+                                    {"none deeper than", "{uncovered_depth.1}"},
+                                    {"protrusion", "{protrusion_over_simplified_max}"},
+                                    {"", "{note}"}});
+  Json leaking = Json::array();
+  std::size_t covered = 0;
+  for (const Json& body : bodies) {
+    if (body.contains("deepest_leak")) leaking.push_back(body);
+    covered += body["covered"] == true ? 1 : 0;
   }
-  std::cout << aligned(rows);
-  if (!places.empty())
-    std::cout << "deepest leaks at (x, y, z), in the frame and unit of the file:\n"
-              << aligned(places);
-  std::cout << covered << " of " << verdicts.size() << " bodies are covered (proved)\n";
+  if (!leaking.empty()) {
+    text += "deepest leaks at (x, y, z), in the frame and unit of the file:\n" +
+            table(leaking, {{"", "  {name}"}, {"", "({deepest_leak})"}});
+  }
+  return text + concat(covered, " of ", bodies.size(), " bodies are covered (proved)\n");
 }
 
 // `audit` of a file of several bodies, each by itself: of one that is no copy the proof of its
@@ -272,19 +263,11 @@ int audit_bodies(const AuditArguments& arguments, const SphereFile& file) {
   const ModelBodies model = read(arguments, file);
   check_names(arguments, file, model);
   const std::vector<BodyVerdict> verdicts = Auditor(arguments, file, model).run();
-  print(verdicts, arguments.json);
-  const bool covered = std::ranges::all_of(
-      verdicts, [](const BodyVerdict& verdict) { return verdict.certificate.covered; });
+  const Json json = bodies_json(verdicts);
+  std::cout << (arguments.json ? to_text(json) : describe_bodies(json["bodies"]));
   const bool measured = std::ranges::any_of(
       model.cad, [](const std::optional<CadPart>& part) { return part && !part->proved; });
-  return covered && !measured ? kYes : kNo;
-}
-
-std::string name_of(const std::optional<ExternalSpheres>& external) {
-  if (!external) return "the mesh and its inside";
-  std::ostringstream solid;
-  solid << "the simplified solid (D " << external->min_external_diameter << ")";
-  return solid.str();
+  return json["covered"] == true && !measured ? kYes : kNo;
 }
 
 Json json_of(const Certificate& certificate, const std::optional<ExternalSpheres>& external) {
@@ -340,10 +323,8 @@ Json json_of(std::span<const LeakPoint> leaks) {
 // --max-error is not among the options to repeat: it comes with --repair only.
 std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double scale) {
   std::vector<std::string> mend = {"audit", arguments.models.front(), arguments.spheres};
-  repeat("--scale", arguments.unit.scale, mend);
-  repeat("--units", arguments.unit.units, mend);
-  repeat("--min-external", arguments.min_external, mend);
-  repeat("--repair", here(arguments.spheres, ".mended.json"), mend);
+  repeat(*arguments.command, {"--scale", "--units", "--min-external"}, mend);
+  mend.insert(mend.end(), {"--repair", here(arguments.spheres, ".mended.json")});
   std::vector<NextStep> steps = {{std::move(mend), "make them cover"}};
   // `view` has no scale: its page would mix units.
   if (scale == 1.0) {
@@ -357,35 +338,31 @@ std::vector<NextStep> steps_after_leak(const AuditArguments& arguments, double s
 void print(const AuditArguments& arguments, const TriangleMesh& mesh, const SphereFile& file,
            double scale, const Certificate& certificate,
            const std::optional<ExternalSpheres>& external, const std::optional<Repaired>& mended) {
+  Json json = json_of(certificate, external);
+  const std::string solid = external
+                                ? filled("the simplified solid (D {min_external_diameter})", json)
+                                : "the mesh and its inside";
+  if (arguments.json && !certificate.covered) {
+    json["leaks"] = json_of(leak_points(mesh, file.spheres));
+  }
+  if (mended) {
+    json["repair"] = {{"file", arguments.repaired}};
+    json["repair"].update(to_json(mended->repair));
+    json["repair"]["total_inflation"] = to_json(mended->repair.total_inflation);
+    json["repair"]["certificate"] = json_of(mended->certificate, external);
+    json["repair"]["warnings"] = mended->warnings;
+  }
   if (arguments.json) {
-    Json json = json_of(certificate, external);
-    if (!certificate.covered) json["leaks"] = json_of(leak_points(mesh, file.spheres));
-    if (mended) {
-      json["repair"] = {{"file", arguments.repaired},
-                        {"max_error", to_json(mended->repair.max_error)},
-                        {"protrusion_before", to_json(mended->repair.protrusion_before)},
-                        {"protrusion_after", to_json(mended->repair.protrusion_after)},
-                        {"grown", mended->repair.inflated},
-                        {"largest_inflation", to_json(mended->repair.largest_inflation)},
-                        {"total_inflation", to_json(mended->repair.total_inflation)},
-                        {"added", mended->repair.added},
-                        {"certificate", json_of(mended->certificate, external)},
-                        {"warnings", mended->warnings}};
-    }
     std::cout << to_text(json);
     return;
   }
-  std::cout << describe(certificate, name_of(external));
-  if (!mended) {
-    if (!certificate.covered) std::cout << describe(steps_after_leak(arguments, scale));
-    return;
+  std::cout << describe_certificate(json, solid);
+  if (mended) {
+    std::cout << "repair: " << describe_repair(json["repair"]) << "\n"
+              << describe_certificate(json["repair"]["certificate"], solid);
+  } else if (!certificate.covered) {
+    std::cout << describe(steps_after_leak(arguments, scale));
   }
-  std::cout << "repair: " << mended->repair.inflated << " spheres inflated, by at most "
-            << mended->repair.largest_inflation << ", and " << mended->repair.added
-            << " added; these protrude by at most " << mended->repair.max_error << ", all by "
-            << mended->repair.protrusion_after << " (before: " << mended->repair.protrusion_before
-            << ")\n"
-            << describe(mended->certificate, name_of(external));
 }
 
 struct Reading {
@@ -405,10 +382,9 @@ Reading reading_of(const AuditArguments& arguments, const SphereFile& file) {
       return model_unit(arguments.models.front(), unit);
     } catch (const Error& error) {
       if (error.subject() != "--scale" || arguments.unit.scale) throw;
-      std::ostringstream text;
-      text << "was fitted with the scale " << stored.scale << ", which does not make "
-           << unit_named(unit.units)->plural << " of " << arguments.models.front();
-      throw Error(arguments.spheres, text.str());
+      throw Error(arguments.spheres,
+                  concat("was fitted with the scale ", stored.scale, ", which does not make ",
+                         unit_named(unit.units)->plural, " of ", arguments.models.front()));
     }
   }();
   arguments.lengths.convert(length_context(arguments.models.front(), found));
@@ -504,16 +480,11 @@ void add_audit(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("audit", "Prove whether spheres cover a mesh; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditArguments>();
-  command->add_option("mesh", arguments->models.front(), "The mesh, or STEP or IGES")
-      ->required()
-      ->type_name(kFile);
-  command->add_option("spheres", arguments->spheres, "Spheres (JSON), of any origin")
-      ->required()
-      ->type_name(kFile);
-  command
-      ->add_option("more", arguments->more,
-                   "Where the spheres are of several meshes: name all of these, then the spheres")
-      ->type_name(kFile);
+  arguments->command = command;
+  add_file_argument(*command, "mesh", arguments->models.front(), "The mesh, or STEP or IGES");
+  add_file_argument(*command, "spheres", arguments->spheres, "Spheres (JSON), of any origin");
+  add_file(*command, "more", arguments->more,
+           "Where the spheres are of several meshes: name all of these, then the spheres");
   add_unit_options(*command, arguments->unit,
                    "Output units per mesh unit (default: as the spheres were fitted)");
   arguments->lengths.add_positive(
@@ -522,12 +493,10 @@ void add_audit(CLI::App& app, int& exit_code) {
   add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the certificate as JSON");
   CLI::Option* repair =
-      command
-          ->add_option("--repair", arguments->repaired,
-                       "Where the spheres go (JSON), inflated and with others added so that they "
-                       "cover; exit 0 then says that these do. Without D anywhere it is chosen as "
-                       "fit does, E being --max-error or 1 % of the box diagonal")
-          ->type_name(kFile);
+      add_file(*command, "--repair", arguments->repaired,
+               "Where the spheres go (JSON), inflated and with others added so that they cover; "
+               "exit 0 then says that these do. Without D anywhere it is chosen as fit does, E "
+               "being --max-error or 1 % of the box diagonal");
   arguments->lengths
       .add_positive(*command, "--max-error", arguments->max_error,
                     "How far a repaired sphere may protrude (default: as the spheres were fitted, "
@@ -537,10 +506,10 @@ void add_audit(CLI::App& app, int& exit_code) {
       {.text = "Any spheres will do: {\"format\": \"spherule-spheres\", \"version\": 1, "
                "\"options\": {}, \"spheres\": [{\"center\": [x, y, z], \"radius\": r}]}.",
        .exit_codes = "0 proved to cover (with --repair: the repaired ones); 1 leaks, or not proved",
-       .examples = {"spherule audit part.stl part.json",
-                    "spherule audit part.stl others.json --repair mended.json --units mm "
-                    "--max-error 2mm",
-                    "spherule audit part.stl part.json --json"}}));
+       .examples = {
+           "spherule audit part.stl part.json",
+           "spherule audit part.stl others.json --repair mended.json --units mm --max-error 2mm",
+           "spherule audit part.stl part.json --json"}}));
   command->callback([arguments, &exit_code] {
     name_spheres_last(*arguments);
     exit_code = audit(*arguments);

@@ -6,11 +6,10 @@
 #include "cli/files/files.h"
 #include "cli/help/help.h"
 #include "cli/options/options.h"
-#include "cli/options/robot_options.h"
 #include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/pair_report.h"
-#include "cli/robots/sphere_input.h"
+#include "cli/robots/robot_input.h"
 #include "cli/robots/trajectory.h"
 #include "cli/text/json.h"
 #include "cli/text/print.h"
@@ -20,12 +19,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,131 +39,12 @@ struct RobotAuditReport {
   std::optional<PairKinds> pairs;  // if they were requested
 };
 
-std::string in_mm(double metres) {
-  const double value = metres * kMillimetresPerMetre;
-  return value == 0.0 ? "0" : decimal(value, value < 0.1 ? 4 : 1);
-}
-
-// "12.3 to 12.4", "0" where nothing is uncovered.
-std::string in_mm(const Bounds& depth) {
-  if (depth.upper == 0.0) return "0";
-  return in_mm(depth.lower) + " to " + in_mm(depth.upper);
-}
-
-std::string in_mm(const Eigen::Vector3d& point) {
-  const auto text = [](double metres) {
-    constexpr double kDigit = 10.0;  // adding 0 makes a zero of -0
-    return decimal(std::round(metres * kMillimetresPerMetre * kDigit) / kDigit + 0.0, 1);
-  };
-  return "(" + text(point.x()) + ", " + text(point.y()) + ", " + text(point.z()) + ")";
-}
-
-// What was not certified, a line each.
-void put_notes(std::ostream& out, const RobotAuditReport& report) {
-  const RobotSpheres& spheres = report.file.spheres;
-  if (spheres.switched_off > 0) {
-    out << "left out: " << spheres.switched_off << " spheres that the file switches off\n";
-  }
-  if (spheres.other_shapes > 0) {
-    out << "left out: " << spheres.other_shapes << " collision shapes that are no spheres\n";
-  }
-  for (const std::string& link : report.audit.unknown_links) {
-    out << "left out: the spheres of " << one_line(link) << ", which is no link of the robot\n";
-  }
-}
-
-std::string link_table(const std::vector<LinkAudit>& links) {
-  std::vector<std::vector<std::string>> rows = {
-      {"link", "spheres", "leak surface", "leak inside", "uncovered", "protrusion", "covered"}};
-  std::size_t spheres = 0;
-  Certificate all;
-  all.covered = true;
-  Bounds protrusion;
-  const auto worsen = [](Bounds& worst, const Bounds& other) {
-    worst = {std::max(worst.lower, other.lower), std::max(worst.upper, other.upper)};
-  };
-  const auto add_row = [&](const std::string& name, std::size_t count, const Certificate& of,
-                           const Bounds& protruding, const std::string& share) {
-    rows.push_back({name, std::to_string(count), in_mm(of.surface_depth), in_mm(of.solid_depth),
-                    share, in_mm(protruding), of.covered ? "yes" : "NO"});
-  };
-  for (const LinkAudit& link : links) {
-    if (!link.certificate) {
-      if (link.spheres == 0) continue;
-      rows.push_back({link.link, std::to_string(link.spheres), "no geometry", "", "", "", ""});
-      continue;
-    }
-    const Certificate& certificate = *link.certificate;
-    add_row(link.link, link.spheres, certificate, *certificate.protrusion_over_mesh,
-            percent(link.uncovered_share, 1));
-    spheres += link.spheres;
-    worsen(all.surface_depth, certificate.surface_depth);
-    worsen(all.solid_depth, certificate.solid_depth);
-    worsen(protrusion, *certificate.protrusion_over_mesh);
-    all.covered = all.covered && certificate.covered;
-  }
-  add_row("all", spheres, all, protrusion, "");
-  return aligned(rows);
-}
-
-// Where the links leak; the columns have no room for it.
-void put_places(std::ostream& out, const std::vector<LinkAudit>& links) {
-  std::vector<std::vector<std::string>> rows;
-  for (const LinkAudit& link : links) {
-    if (!link.certificate || !(link.certificate->uncovered_depth.lower > 0.0)) continue;
-    rows.push_back({"  " + link.link, in_mm(link.certificate->deepest_leak)});
-  }
-  if (rows.empty()) return;
-  out << "deepest leaks at (x, y, z), in the frame of the link:\n" << aligned(rows);
-}
-
-void put_repair(std::ostream& out, const RobotAuditReport& report) {
-  if (!report.repair) return;
-  out << "repaired into " << one_line(report.repaired_file) << "\n";
-  for (const LinkRepair& link : report.repair->links) {
-    out << "  " << one_line(link.link) << ": " << link.repair.inflated
-        << " spheres inflated, by at most " << in_mm(link.repair.largest_inflation) << ", and "
-        << link.repair.added << " added; these protrude by at most " << in_mm(link.repair.max_error)
-        << ", all by " << in_mm(link.repair.protrusion_after)
-        << " (before: " << in_mm(link.repair.protrusion_before) << "); "
-        << (link.certificate.covered ? "covered (proved)" : "NOT proved to cover") << "\n";
-  }
-}
-
 Json json_of(const LinkAudit& link) {
-  Json json = Json::object();
-  json["link"] = link.link;
-  json["sphere_count"] = link.spheres;
-  json["uncovered_share"] = link.uncovered_share;
-  json["certificate"] = link.certificate ? to_json(*link.certificate) : Json(nullptr);
-  json["warnings"] = link.warnings;
-  return json;
-}
-
-// A table of the links, the configurations, the repair and the pairs of links, lengths in
-// millimetres.
-std::string audit_table(const RobotAuditReport& report) {
-  std::ostringstream out;
-  out << name_of(report.file.format) << "; lengths in mm\n" << link_table(report.audit.links);
-  put_places(out, report.audit.links);
-  put_notes(out, report);
-  std::size_t number = 0;
-  for (const ConfigurationAudit& configuration : report.audit.configurations) {
-    out << "configuration " << ++number << ": ";
-    if (configuration.uncovered_depth.upper == 0.0) {
-      out << "all links are covered (proved)\n";
-    } else {
-      out << "leak " << in_mm(configuration.uncovered_depth) << ", at "
-          << one_line(configuration.deepest_link);
-      if (configuration.deepest_leak) {
-        out << ", " << in_mm(*configuration.deepest_leak) << " in the frame of the root";
-      }
-      out << "\n";
-    }
-  }
-  put_repair(out, report);
-  if (report.pairs) out << describe(*report.pairs);
-  return out.str();
+  return {{"link", link.link},
+          {"sphere_count", link.spheres},
+          {"uncovered_share", link.uncovered_share},
+          {"certificate", to_json(link.certificate)},
+          {"warnings", link.warnings}};
 }
 
 Json audit_json(const RobotAuditReport& report) {
@@ -193,21 +71,87 @@ Json audit_json(const RobotAuditReport& report) {
   if (!report.repair) return json;
   json["repair"] = {{"file", report.repaired_file}, {"links", Json::array()}};
   for (const LinkRepair& link : report.repair->links) {
-    json["repair"]["links"].push_back(
-        {{"link", link.link},
-         {"max_error", to_json(link.repair.max_error)},
-         {"protrusion_before", to_json(link.repair.protrusion_before)},
-         {"protrusion_after", to_json(link.repair.protrusion_after)},
-         {"grown", link.repair.inflated},
-         {"largest_inflation", to_json(link.repair.largest_inflation)},
-         {"added", link.repair.added},
-         {"certificate", to_json(link.certificate)},
-         {"warnings", link.warnings}});
+    Json& repaired = json["repair"]["links"].emplace_back(Json{{"link", link.link}});
+    repaired.update(to_json(link.repair));
+    repaired["certificate"] = to_json(link.certificate);
+    repaired["warnings"] = link.warnings;
   }
   return json;
 }
 
+// The worst of the links that have geometry, as a link of its own.
+LinkAudit all_links(const std::vector<LinkAudit>& links) {
+  LinkAudit all{.link = "all", .certificate = Certificate{}};
+  all.certificate->covered = true;
+  Bounds protrusion;
+  const auto worsen = [](Bounds& worst, const Bounds& other) {
+    worst = {std::max(worst.lower, other.lower), std::max(worst.upper, other.upper)};
+  };
+  for (const LinkAudit& link : links) {
+    if (!link.certificate) continue;
+    all.spheres += link.spheres;
+    worsen(all.certificate->surface_depth, link.certificate->surface_depth);
+    worsen(all.certificate->solid_depth, link.certificate->solid_depth);
+    worsen(protrusion, *link.certificate->protrusion_over_mesh);
+    all.certificate->covered = all.certificate->covered && link.certificate->covered;
+  }
+  all.certificate->protrusion_over_mesh = protrusion;
+  return all;
+}
+
+// A table of the links, the configurations, the repair and the pairs of links, lengths in
+// millimetres.
+std::string audit_table(const RobotAuditReport& report, const Json& json) {
+  Json rows = Json::array();
+  Json leaking = Json::array();
+  for (const Json& link : json["links"]) {
+    if (link["certificate"].is_null() && link["sphere_count"] == 0) continue;
+    rows.push_back(link);
+    if (link["certificate"].is_null()) {
+      rows.back()["uncovered_share"] = nullptr;
+    } else if (!link["certificate"]["deepest_leak"].is_null()) {
+      leaking.push_back(link);
+    }
+  }
+  rows.push_back(json_of(all_links(report.audit.links)));
+  rows.back()["uncovered_share"] = nullptr;
+  std::string text = filled("{format}; lengths in mm\n", json) +
+                     table(rows, {{"link", "{link}"},
+                                  {"spheres", "{sphere_count}"},
+                                  {"leak surface", "{certificate.uncovered_depth_surface:mm~}"},
+                                  {"leak inside", "{certificate.uncovered_depth_solid:mm~}"},
+                                  {"uncovered", "{uncovered_share:%1}"},
+                                  {"protrusion", "{certificate.protrusion_over_mesh:mm~}"},
+                                  {"covered", "{certificate.covered:yes|NO}"}});
+  if (!leaking.empty()) {
+    text += "deepest leaks at (x, y, z), in the frame of the link:\n" +
+            table(leaking, {{"", "  {link}"}, {"", "({certificate.deepest_leak:mmf1})"}});
+  }
+  text += lines(json, {{"#switched_off", "left out: {} spheres that the file switches off\n"},
+                       {"#other_shapes", "left out: {} collision shapes that are no spheres\n"}});
+  for (const std::string& link : report.audit.unknown_links) {
+    text += "left out: the spheres of " + one_line(link) + ", which is no link of the robot\n";
+  }
+  std::size_t number = 0;
+  for (const Json& configuration : json.value("configurations", Json::array())) {
+    text += "configuration " + std::to_string(++number) +
+            lines(configuration, {{"!deepest_link", ": all links are covered (proved)\n"},
+                                  {"deepest_link", ": leak {uncovered_depth:mm~}, at {}"},
+                                  {"deepest_leak", ", ({:mmf1}) in the frame of the root"},
+                                  {"deepest_link", "\n"}});
+  }
+  if (report.repair) {
+    text += filled("repaired into {repair.file}\n", json);
+    for (const Json& link : json["repair"]["links"]) {
+      text += filled("  {link}: ", link) + describe_repair(link, "mm") +
+              filled("; {certificate.covered:covered (proved)|NOT proved to cover}\n", link);
+    }
+  }
+  return text + (report.pairs ? describe_kinds(json) : "");
+}
+
 struct AuditRobotArguments {
+  const CLI::App* command = nullptr;
   std::string urdf;
   std::string spheres;
   std::string geometry = geometry_names().front();
@@ -285,19 +229,16 @@ std::vector<NextStep> steps_after_leak(const AuditRobotArguments& arguments, boo
   const bool is_shown = names_links || is_robot_file(arguments.spheres);
   if (is_shown && arguments.link.empty() && !arguments.level) {
     std::vector<std::string> view = {"view", arguments.urdf, arguments.spheres};
-    repeat_robot_options(arguments.geometry, arguments.packages, view);
+    repeat(*arguments.command, {"--geometry", "--package"}, view);
     view.insert(view.end(), {"--leaks", "-o", here(arguments.spheres, ".html")});
     steps.push_back({std::move(view), "see where they leak"});
   }
   if (is_mendable && arguments.poses.file.empty()) {
     std::vector<std::string> mend = {"audit-robot", arguments.urdf, arguments.spheres};
-    repeat_robot_options(arguments.geometry, arguments.packages, mend);
-    repeat("--link", arguments.link, mend);
-    if (arguments.level) repeat("--level", std::to_string(*arguments.level), mend);
-    repeat("--max-error", arguments.max_error, mend);
-    repeat("--min-external", arguments.min_external, mend);
+    repeat(*arguments.command,
+           {"--geometry", "--package", "--link", "--level", "--max-error", "--min-external"}, mend);
     const std::string ending = std::filesystem::path(arguments.spheres).extension().string();
-    repeat("--repair", here(arguments.spheres, ".mended" + ending), mend);
+    mend.insert(mend.end(), {"--repair", here(arguments.spheres, ".mended" + ending)});
     steps.push_back({std::move(mend), "make them cover"});
   }
   return steps;
@@ -382,9 +323,8 @@ RobotAuditReport audited(const AuditRobotArguments& arguments, const AuditInput&
 
 void print(const AuditRobotArguments& arguments, const AuditInput& input,
            const RobotAuditReport& report) {
-  const bool needs_json = arguments.json || (!arguments.view.empty() && !report.repair);
-  const Json json = needs_json ? audit_json(report) : Json();
-  std::cout << (arguments.json ? to_text(json) : audit_table(report));
+  const Json json = audit_json(report);
+  std::cout << (arguments.json ? to_text(json) : audit_table(report, json));
   if (arguments.view.empty()) return;
   write_page(arguments.view, page_of(arguments, input.robot, report, json));
   if (!arguments.json) std::cout << page_line(arguments.view);
@@ -437,35 +377,24 @@ int audit(const AuditRobotArguments& arguments) {
 }
 
 void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
-  command.add_option("urdf", arguments.urdf, "The robot, with its meshes")
-      ->required()
-      ->type_name(kFile);
-  command
-      .add_option("spheres", arguments.spheres,
-                  "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, MorphIt, "
-                  "ballpark or spherule; told apart by content")
-      ->required()
-      ->type_name(kFile);
+  add_file_argument(command, "urdf", arguments.urdf, "The robot, with its meshes");
+  add_file_argument(command, "spheres", arguments.spheres,
+                    "Its spheres: spherized URDF, SRDF, cuRobo yml, XRDF, or JSON of foam, "
+                    "MorphIt, ballpark or spherule; told apart by content");
   add_unknown_links_flag(command, arguments.ignores_unknown_links);
   add_geometry_option(command, "Which of the robot's geometries is to be covered",
                       arguments.geometry);
   add_package_option(command, arguments.packages);
-  command
-      .add_option("--poses", arguments.poses.file,
-                  "Configurations (CSV) in which spheres of other links may cover too; the "
-                  "exit code is then about these")
-      ->type_name(kFile);
+  add_file(command, "--poses", arguments.poses.file,
+           "Configurations (CSV) in which spheres of other links may cover too; the exit code is "
+           "then about these");
   add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
       ->needs("--poses");
-  command
-      .add_option("--srdf", arguments.pairs.srdf,
-                  "The robot's SRDF: tell the pairs of links apart, and judge those it disables")
-      ->type_name(kFile);
-  command
-      .add_option("--pairs", arguments.pairs.pairs,
-                  "What is proved of the pairs of links (NAME.pairs of robot, covered without "
-                  "padding): tell them apart by it; without it --srdf proves them first")
-      ->type_name(kFile);
+  add_file(command, "--srdf", arguments.pairs.srdf,
+           "The robot's SRDF: tell the pairs of links apart, and judge those it disables");
+  add_file(command, "--pairs", arguments.pairs.pairs,
+           "What is proved of the pairs of links (NAME.pairs of robot, covered without padding): "
+           "tell them apart by it; without it --srdf proves them first");
 }
 
 }  // namespace
@@ -475,6 +404,7 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       "audit-robot",
       "Prove whether a file's spheres cover a robot, link by link; exit 0 covered, 1 leaks");
   auto arguments = std::make_shared<AuditRobotArguments>();
+  arguments->command = command;
   add_inputs(*command, *arguments);
   command->add_option("--link", arguments->link,
                       "Whose spheres they are, if the file names no link");
@@ -484,37 +414,28 @@ void add_audit_robot(CLI::App& app, int& exit_code) {
       ->check(check_not_negative);
   add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the certificates as JSON");
-  command
-      ->add_option("--view", arguments->view,
-                   "Write a page that shows the robot, the spheres (with --repair those) and their "
-                   "leaks (HTML, as view "
-                   "writes it)")
-      ->type_name(kFile);
-  command
-      ->add_option("--repair", arguments->repaired,
-                   "Where the file goes with spheres inflated and added so that they cover every "
-                   "link; exit 0 then says that these do")
-      ->type_name(kFile);
-  arguments->lengths.add_positive(
-      *command, "--max-error", arguments->max_error,
-      "E, metres: for which the spheres were made (default 0.01), and how far a repaired one may "
-      "protrude (default: as far as half of the link's spheres do, and at least 1 % of its box "
-      "diagonal)");
-  arguments->lengths.add_positive(
-      *command, "--min-external", arguments->min_external,
-      "D, metres, for which the spheres were made (default: 4 E, or more "
-      "for links that are very large for their E)");
+  add_file(*command, "--view", arguments->view,
+           "Write a page that shows the robot, the spheres (with --repair those) and their leaks "
+           "(HTML, as view writes it)");
+  add_file(*command, "--repair", arguments->repaired,
+           "Where the file goes with spheres inflated and added so that they cover every link; "
+           "exit 0 then says that these do");
+  arguments->lengths.add_positive(*command, "--max-error", arguments->max_error,
+                                  "E, metres: for which the spheres were made (default 0.01), and "
+                                  "how far a repaired one may protrude (default: as far as half of "
+                                  "the link's spheres do, and at least 1 % of its box diagonal)");
+  arguments->lengths.add_positive(*command, "--min-external", arguments->min_external,
+                                  "D, metres, for which the spheres were made (default: 4 E, or "
+                                  "more for links that are very large for their E)");
   command->footer(to_text(
-      {.text =
-           "Lengths are in metres, as in the URDF, or have a unit of their own (5mm); the table is "
-           "in millimetres.",
-       .exit_codes = "0 every link is proved to be covered (with --poses: in these; with "
-                     "--repair: by the repaired spheres); 1 leaks, or not proved",
-       .examples = {"spherule audit-robot robot.urdf robot.curobo.yml",
-                    "spherule audit-robot robot.urdf robot.spheres.urdf --geometry visual "
-                    "--poses path.csv",
-                    "spherule audit-robot robot.urdf robot.curobo.yml --repair "
-                    "mended.yml --json"}}));
+      {.text = "Lengths are in metres, as in the URDF, or have a unit of their own (5mm); the "
+               "table is in millimetres.",
+       .exit_codes = "0 every link is proved to be covered (with --poses: in these; with --repair: "
+                     "by the repaired spheres); 1 leaks, or not proved",
+       .examples = {
+           "spherule audit-robot robot.urdf robot.curobo.yml",
+           "spherule audit-robot robot.urdf robot.spheres.urdf --geometry visual --poses path.csv",
+           "spherule audit-robot robot.urdf robot.curobo.yml --repair mended.yml --json"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
     exit_code = audit(*arguments);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/commands/command.h"
 #include "cli/files/files.h"
 #include "cli/help/help.h"
 #include "cli/options/options.h"
-#include "cli/options/robot_options.h"
 #include "cli/pages/check_view.h"
 #include "cli/pages/view_page.h"
 #include "cli/robots/check_report.h"
-#include "cli/robots/sphere_input.h"
+#include "cli/robots/robot_input.h"
 #include "cli/robots/trajectory.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
@@ -37,6 +37,7 @@ constexpr const char* kAsGiven = "as-given";
 constexpr const char* kShortest = "shortest";
 
 struct CheckArguments {
+  const CLI::App* command = nullptr;
   std::string urdf;
   std::string scene;
   TrajectoryArguments trajectory;
@@ -70,24 +71,14 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   text +=
       "where they may, name them under \"allowed_contacts\" in " + one_line(arguments.scene) + "\n";
   if (!arguments.spheres.empty()) return text;  // how coarse they are is not known
-  const CheckArguments defaults;
   std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene,
                                     arguments.trajectory.file};
-  if (arguments.trajectory.has_motions) finer.push_back("--edges");
-  if (arguments.continuous != defaults.continuous) {
-    repeat("--continuous", arguments.continuous, finer);
-  }
-  if (arguments.trajectory.is_in_degrees) finer.push_back("--degrees");
-  if (arguments.enforces_limits) finer.push_back("--enforce-limits");
-  if (arguments.resolution != defaults.resolution) {
-    repeat("--resolution", arguments.resolution, finer);
-  }
-  repeat("--max-error", 0.5 * arguments.cover.max_error, finer);
-  if (arguments.cover.effort != defaults.cover.effort) {
-    repeat("--effort", std::to_string(arguments.cover.effort), finer);
-  }
-  if (!arguments.pairs.empty()) repeat("--pairs", arguments.pairs, finer);
-  repeat_robot_options(arguments.geometry, arguments.packages, finer);
+  repeat(*arguments.command,
+         {"--edges", "--continuous", "--degrees", "--enforce-limits", "--resolution", "--effort",
+          "--pairs", "--geometry", "--package"},
+         finer);
+  finer.insert(finer.end(),
+               {"--max-error", internal::number_text(0.5 * arguments.cover.max_error)});
   return text + describe({{std::move(finer), "finer spheres may part them"}});
 }
 
@@ -264,22 +255,18 @@ int check(const CheckArguments& arguments) {
                    .report = report},
                   input.trajectory.has_motions);
   }
-  std::cout << (arguments.json ? check_json(report)
-                               : check_table(report) + advice(arguments, report));
+  const Json json = check_json(report);
+  std::cout << (arguments.json ? to_text(json)
+                               : check_table(report, json) + advice(arguments, report));
   if (!arguments.view.empty() && !arguments.json) std::cout << page_line(arguments.view);
   return report.is_free() ? kYes : kNo;
 }
 
 void add_files(CLI::App& command, CheckArguments& arguments) {
-  command.add_option("urdf", arguments.urdf, "URDF of the robot")->required()->type_name(kFile);
-  command.add_option("scene", arguments.scene, "Scene, JSON (docs/scene-file.md)")
-      ->required()
-      ->type_name(kFile);
-  command
-      .add_option("trajectory", arguments.trajectory.file,
-                  "Configurations, one a line, with or without a line of joint names")
-      ->required()
-      ->type_name(kFile);
+  add_file_argument(command, "urdf", arguments.urdf, "URDF of the robot");
+  add_file_argument(command, "scene", arguments.scene, "Scene, JSON (docs/scene-file.md)");
+  add_file_argument(command, "trajectory", arguments.trajectory.file,
+                    "Configurations, one a line, with or without a line of joint names");
 }
 
 void add_motions(CLI::App& command, CheckArguments& arguments) {
@@ -307,17 +294,13 @@ void add_motions(CLI::App& command, CheckArguments& arguments) {
 }
 
 void add_spheres(CLI::App& command, CheckArguments& arguments) {
-  command
-      .add_option("--spheres", arguments.spheres,
-                  "Spheres of the robot, in any format that audit-robot reads, taken as they are: "
-                  "audit-robot proves whether they cover (default: cover the robot first)")
-      ->type_name(kFile);
+  add_file(command, "--spheres", arguments.spheres,
+           "Spheres of the robot, in any format that audit-robot reads, taken as they are: "
+           "audit-robot proves whether they cover (default: cover the robot first)");
   add_unknown_links_flag(command, arguments.ignores_unknown_links);
-  command
-      .add_option("--pairs", arguments.pairs,
-                  "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered "
-                  "without padding): where two are proved free their spheres are not tested")
-      ->type_name(kFile);
+  add_file(command, "--pairs", arguments.pairs,
+           "What is proved of the pairs of the robot's links (NAME.pairs of robot, covered without "
+           "padding): where two are proved free their spheres are not tested");
   arguments.lengths.add_positive(
       command, "--max-error", arguments.cover.max_error,
       "Without --spheres: how far spheres may protrude, in metres (default 0.01)");
@@ -338,27 +321,25 @@ void add_check(CLI::App& app, int& exit_code) {
       "check",
       "Check a robot along a trajectory in a scene; exit 0 free, 1 collision or not proved");
   auto arguments = std::make_shared<CheckArguments>();
+  arguments->command = command;
   add_files(*command, *arguments);
   add_motions(*command, *arguments);
   add_spheres(*command, *arguments);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
-  command
-      ->add_option("--view", arguments->view,
-                   "Write a page that plays the trajectory in its scene, with verdicts, contacts "
-                   "and clearance (HTML, as view writes it)")
-      ->type_name(kFile);
-  command->footer(
-      to_text({.text = "",
-               .exit_codes = "0 free; 1 a collision, not proved, a link without spheres, or with "
-                             "--enforce-limits a configuration outside the joint limits",
-               .examples = {"spherule check robot.urdf cell.json path.csv",
-                            "spherule check robot.urdf cell.json path.csv --edges --spheres "
-                            "robot.spheres.json --json",
-                            "spherule check robot.urdf cell.json path.csv --edges --view path.html",
-                            "spherule check robot.urdf cell.json path.csv --degrees "
-                            "--edges --continuous shortest",
-                            "spherule check robot.urdf cell.json path.csv --edges --json --shard "
-                            "2/8"}}));
+  add_file(*command, "--view", arguments->view,
+           "Write a page that plays the trajectory in its scene, with verdicts, contacts and "
+           "clearance (HTML, as view writes it)");
+  command->footer(to_text(
+      {.text = "",
+       .exit_codes = "0 free; 1 a collision, not proved, a link without spheres, or with "
+                     "--enforce-limits a configuration outside the joint limits",
+       .examples = {
+           "spherule check robot.urdf cell.json path.csv",
+           "spherule check robot.urdf cell.json path.csv --edges --spheres robot.spheres.json "
+           "--json",
+           "spherule check robot.urdf cell.json path.csv --edges --view path.html",
+           "spherule check robot.urdf cell.json path.csv --degrees --edges --continuous shortest",
+           "spherule check robot.urdf cell.json path.csv --edges --json --shard 2/8"}}));
   command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
     exit_code = check(*arguments);

@@ -4,8 +4,8 @@
 #include "cli/files/files.h"
 #include "cli/help/help.h"
 #include "cli/options/options.h"
-#include "cli/options/robot_options.h"
 #include "cli/robots/pair_report.h"
+#include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
 #include "robot/cover/link_mesh.h"
@@ -16,10 +16,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iomanip>
 #include <iostream>
+#include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -35,62 +34,50 @@ struct CheckSrdfArguments {
   bool json = false;
 };
 
-std::size_t count_of(const SrdfJudgement& judgement, DisabledVerdict verdict) {
-  return static_cast<std::size_t>(
-      std::count_if(judgement.pairs.begin(), judgement.pairs.end(),
-                    [&](const JudgedPair& judged) { return judged.verdict == verdict; }));
-}
-
-void describe_touching(const SrdfJudgement& judgement, const RobotModel& robot, bool is_wrong,
-                       std::ostream& out) {
-  for (const JudgedPair& judged : judgement.pairs) {
-    if (judged.verdict != DisabledVerdict::kTouches || judged.is_wrong != is_wrong) continue;
-    out << "  " << describe(judged.pair) << ": " << describe_posture(robot, judged.witness) << "\n";
-  }
-}
-
 // Bad news first.
 std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
-  const auto wrong = static_cast<std::size_t>(
-      std::count_if(judgement.pairs.begin(), judgement.pairs.end(),
-                    [](const JudgedPair& judged) { return judged.is_wrong; }));
-  std::ostringstream out;
-  if (wrong > 0) {
-    out << wrong << " disabled " << (wrong == 1 ? "pair touches" : "pairs touch")
-        << ", though not meant to:\n";
-    describe_touching(judgement, robot, true, out);
-  }
-  if (count_of(judgement, DisabledVerdict::kTouches) > wrong) {
-    out << "touching by somebody's decision (Default, Always, User):\n";
-    describe_touching(judgement, robot, false, out);
-  }
-  if (count_of(judgement, DisabledVerdict::kUnknown) > 0) out << "neither proved nor touching:\n";
+  std::map<DisabledVerdict, std::size_t> count;
+  std::size_t wrong_count = 0;
+  std::string wrong;
+  std::string decided;
+  std::string open;
   for (const JudgedPair& judged : judgement.pairs) {
-    if (judged.verdict != DisabledVerdict::kUnknown) continue;
-    out << "  " << describe(judged.pair);
-    if (std::isfinite(judged.smallest_gap)) {
-      out << ": " << std::setprecision(3) << judged.smallest_gap * kMillimetresPerMetre
-          << " mm apart at the nearest posture found";
+    ++count[judged.verdict];
+    wrong_count += judged.is_wrong ? 1 : 0;
+    const std::string pair = "  " + describe(judged.pair);
+    if (judged.verdict == DisabledVerdict::kTouches) {
+      (judged.is_wrong ? wrong : decided) +=
+          pair + ": " + describe_posture(robot, judged.witness) + "\n";
+    } else if (judged.verdict == DisabledVerdict::kUnknown) {
+      open += pair;
+      if (std::isfinite(judged.smallest_gap)) {
+        open += ": " + number(judged.smallest_gap * kMillimetresPerMetre, 3) +
+                " mm apart at the nearest posture found";
+      }
+      open += "\n";
     }
-    out << "\n";
   }
-  out << judgement.pairs.size()
-      << " disabled pairs: " << count_of(judgement, DisabledVerdict::kNever)
-      << " proved never to touch within the limits, "
-      << count_of(judgement, DisabledVerdict::kAdjacent) << " adjacent, "
-      << count_of(judgement, DisabledVerdict::kRigid) << " rigid, "
-      << count_of(judgement, DisabledVerdict::kTouches) << " touching, "
-      << count_of(judgement, DisabledVerdict::kUnknown) << " unknown, "
-      << count_of(judgement, DisabledVerdict::kNoBody) << " without geometry, "
-      << count_of(judgement, DisabledVerdict::kOtherRobot) << " of other robots\n";
-  if (!judgement.could_be_added.empty()) {
-    out << "could be disabled, too (proved never to touch):\n";
+  if (!wrong.empty()) {
+    wrong = concat(wrong_count, " disabled ", wrong_count == 1 ? "pair touches" : "pairs touch",
+                   ", though not meant to:\n", wrong);
   }
+  if (!decided.empty()) {
+    decided = "touching by somebody's decision (Default, Always, User):\n" + decided;
+  }
+  if (!open.empty()) open = "neither proved nor touching:\n" + open;
+  std::string addable;
   for (const auto& [first, second] : judgement.could_be_added) {
-    out << "  " << one_line(link_name(robot, first)) << " and "
-        << one_line(link_name(robot, second)) << "\n";
+    addable += concat(addable.empty() ? "could be disabled, too (proved never to touch):\n" : "",
+                      "  ", one_line(link_name(robot, first)), " and ",
+                      one_line(link_name(robot, second)), "\n");
   }
-  return out.str();
+  return concat(wrong, decided, open, judgement.pairs.size(),
+                " disabled pairs: ", count[DisabledVerdict::kNever],
+                " proved never to touch within the limits, ", count[DisabledVerdict::kAdjacent],
+                " adjacent, ", count[DisabledVerdict::kRigid], " rigid, ",
+                count[DisabledVerdict::kTouches], " touching, ", count[DisabledVerdict::kUnknown],
+                " unknown, ", count[DisabledVerdict::kNoBody], " without geometry, ",
+                count[DisabledVerdict::kOtherRobot], " of other robots\n", addable);
 }
 
 Json judgement_json(const SrdfJudgement& judgement, const RobotModel& robot) {
@@ -137,10 +124,8 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
       "check-srdf",
       "Prove whether the pairs of links that an SRDF disables never touch; exit 0 proved, 1 not");
   auto arguments = std::make_shared<CheckSrdfArguments>();
-  command->add_option("urdf", arguments->urdf, "The robot, with its meshes")
-      ->required()
-      ->type_name(kFile);
-  command->add_option("srdf", arguments->srdf, "Its SRDF")->required()->type_name(kFile);
+  add_file_argument(*command, "urdf", arguments->urdf, "The robot, with its meshes");
+  add_file_argument(*command, "srdf", arguments->srdf, "Its SRDF");
   add_geometry_option(*command, "Which of the robot's geometries is meant", arguments->geometry);
   add_package_option(*command, arguments->packages);
   command
@@ -151,12 +136,11 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
                      "without --seconds the result is the same");
   command->add_flag("--json", arguments->json, "Print the verdicts as JSON");
   command->footer(to_text(
-      {.text =
-           "A pair is proved never to touch within the limits of the joints, by the meshes with "
-           "their insides, or a posture is shown in which it does. The reasons Default, Always and "
-           "User are decisions; every other one, and none, says that the links are apart, and "
-           "touching is then wrong but for links that one joint joins, or none moves against each "
-           "other.",
+      {.text = "A pair is proved never to touch within the limits of the joints, by the meshes "
+               "with their insides, or a posture is shown in which it does. The reasons Default, "
+               "Always and User are decisions; every other one, and none, says that the links are "
+               "apart, and touching is then wrong but for links that one joint joins, or none "
+               "moves against each other.",
        .exit_codes = "0 every pair that is said to be apart, but for these, is proved never to "
                      "touch; 1 some touch, or nothing is proved of them",
        .examples = {"spherule check-srdf robot.urdf robot.srdf",

@@ -5,14 +5,12 @@
 #include "cli/files/files.h"
 #include "cli/help/help.h"
 #include "cli/options/options.h"
-#include "cli/options/robot_options.h"
 #include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/pair_report.h"
-#include "cli/robots/robot_false_alarms.h"
+#include "cli/robots/robot_cover.h"
 #include "cli/robots/robot_files.h"
-#include "cli/robots/robot_report.h"
-#include "cli/robots/sphere_input.h"
+#include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
 #include "robot/check/scene_setup.h"
@@ -39,6 +37,7 @@ namespace {
 
 // What the command `robot` is given.
 struct RobotArguments {
+  const CLI::App* command = nullptr;
   std::string urdf;
   std::string folder;
   std::string geometry = geometry_names().front();
@@ -51,7 +50,6 @@ struct RobotArguments {
   std::string tool_link;
   bool json = false;
   std::string view;
-  bool has_max_error = false;
   ReportContent report_content = ReportContent::kNoExternalSpheres;
   FalseAlarmArguments false_alarms;
   RobotCoverOptions options;
@@ -59,11 +57,8 @@ struct RobotArguments {
 };
 
 void add_cover_options(CLI::App& command, RobotArguments& arguments) {
-  command
-      .add_option("urdf", arguments.urdf,
-                  "The robot (URDF, or .xacro where the program xacro is found)")
-      ->required()
-      ->type_name(kFile);
+  add_file_argument(command, "urdf", arguments.urdf,
+                    "The robot (URDF, or .xacro where the program xacro is found)");
   command
       .add_option("-o,--output", arguments.folder,
                   "Folder for what is written; it is made if it is not there (default: "
@@ -106,21 +101,15 @@ void add_link_options(CLI::App& command, RobotArguments& arguments) {
 
 // Files of which what does not concern the spheres is kept.
 void add_kept_files(CLI::App& command, RobotArguments& arguments) {
-  command
-      .add_option("--srdf", arguments.srdf,
-                  "The robot's SRDF: its disabled pairs are ignored; all but its spheres is kept, "
-                  "and pairs that need no test are added")
-      ->type_name(kFile);
-  command
-      .add_option("--curobo", arguments.curobo,
-                  "The robot's cuRobo file, of which all but the spheres is kept; pairs that need "
-                  "no test are added")
-      ->type_name(kFile);
-  command
-      .add_option("--xrdf", arguments.xrdf,
-                  "The robot's XRDF, of which all but the spheres is kept; pairs that need no test "
-                  "are added")
-      ->type_name(kFile);
+  add_file(command, "--srdf", arguments.srdf,
+           "The robot's SRDF: its disabled pairs are ignored; all but its spheres is kept, and "
+           "pairs that need no test are added");
+  add_file(command, "--curobo", arguments.curobo,
+           "The robot's cuRobo file, of which all but the spheres is kept; pairs that need no test "
+           "are added");
+  add_file(
+      command, "--xrdf", arguments.xrdf,
+      "The robot's XRDF, of which all but the spheres is kept; pairs that need no test are added");
   command
       .add_option("--tool-link", arguments.tool_link,
                   "The tool's link in new cuRobo and XRDF files (default: where the chain of "
@@ -135,18 +124,15 @@ void add_robot_options(CLI::App& command, RobotArguments& arguments) {
   add_kept_files(command, arguments);
   add_false_alarm_options(command, arguments.false_alarms);
   RobotCoverOptions& options = arguments.options;
-  add_search_options(
-      command, {options.seed, options.effort, options.seconds, options.threads},
-      "Rounds at most of searching for fewer spheres than at first, for each link, fewer where "
-      "more would not pay; 0: none",
-      "Search for fewer spheres for so long, for each link, less where it no longer finds any; the "
-      "result then depends on the machine");
+  add_search_options(command, {options.seed, options.effort, options.seconds, options.threads},
+                     "Rounds at most of searching for fewer spheres than at first, for each link, "
+                     "fewer where more would not pay; 0: none",
+                     "Search for fewer spheres for so long, for each link, less where it no longer "
+                     "finds any; the result then depends on the machine");
   add_external_spheres_flag(command, arguments.report_content);
   command.add_flag("--json", arguments.json, "Print the summary as JSON, lengths in metres");
-  command
-      .add_option("--view", arguments.view,
-                  "Write a page that shows the robot and its spheres (HTML, as view writes it)")
-      ->type_name(kFile);
+  add_file(command, "--view", arguments.view,
+           "Write a page that shows the robot and its spheres (HTML, as view writes it)");
 }
 
 namespace fs = std::filesystem;
@@ -238,7 +224,7 @@ std::vector<NextStep> next_steps(const RobotArguments& arguments,
   }
   view.insert(view.end(), {"-o", beside(spheres->string(), ".html")});
   for (std::vector<std::string>* step : {&view, &check}) {
-    repeat_robot_options(arguments.geometry, arguments.packages, *step);
+    repeat(*arguments.command, {"--geometry", "--package"}, *step);
   }
   return {{std::move(view), "examine them"}, {std::move(check), "check a program"}};
 }
@@ -254,17 +240,6 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
   std::vector<NamedPosture> postures = group_postures(model, semantics);
   postures.insert(postures.begin(), zero_posture(model));
   return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
-}
-
-std::string describe_pairs(const MeasuredCover& measured) {
-  std::string text;
-  if (measured.pairs != nullptr) {
-    text = describe_link_pairs(*measured.pairs, measured.pair_seconds);
-  }
-  if (measured.pairs_interrupted) {
-    text += "pairs of links: the search for proofs was interrupted; what is unknown stays tested\n";
-  }
-  return text;
 }
 
 // Whether all that was promised holds; says on standard error what does not.
@@ -323,6 +298,15 @@ Json summary_of(const std::string& urdf, const RobotModel& model, const Measured
   return summary;
 }
 
+std::string describe(const Json& summary, const MeasuredCover& measured) {
+  std::string text = robot_table(summary, measured.cover);
+  if (measured.pairs != nullptr) text += describe_link_pairs(summary["link_pairs"]);
+  if (measured.pairs_interrupted) {
+    text += "pairs of links: the search for proofs was interrupted; what is unknown stays tested\n";
+  }
+  return text + describe_false_alarms(summary["false_alarms"], measured);
+}
+
 void print_warnings(const RobotCover& cover, LinkWarnings& of_links,
                     const std::vector<std::string>& wrong_pairs,
                     const std::vector<PostureContact>& contacts) {
@@ -370,8 +354,9 @@ int cover_links(RobotArguments& arguments) {
     ProgressBar bar;
     options.progress = bar.callback();
     options.on_doubt = warnings.on_doubt(bar);
-    return in_file(arguments.urdf,
-                   [&] { return run.cover(options, arguments.has_max_error, names_of(disabled)); });
+    return in_file(arguments.urdf, [&] {
+      return run.cover(options, arguments.command->count("--max-error") > 0, names_of(disabled));
+    });
   }();
   const RobotCover& result = measured.cover;
   if (measured.pairs == nullptr) std::erase(plan.formats, kPairsFormat);
@@ -389,9 +374,7 @@ int cover_links(RobotArguments& arguments) {
     write_file_atomically(plan.report(robot), to_text(report, Layout::kCompact));
   });
 
-  std::cout << (arguments.json ? to_text(summary)
-                               : robot_table(result, seconds.count()) + describe_pairs(measured) +
-                                     describe_false_alarms(measured, robot.model));
+  std::cout << (arguments.json ? to_text(summary) : describe(summary, measured));
   if (!arguments.view.empty()) {
     write_page(arguments.view, covered_robot_scene(robot, arguments.geometry, spheres,
                                                    "spheres of " + robot.name, report));
@@ -412,25 +395,23 @@ void add_robot(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("robot", "Cover every link of a robot with spheres, with a proof");
   auto arguments = std::make_shared<RobotArguments>();
+  arguments->command = command;
   add_robot_options(*command, *arguments);
   command->footer(to_text(
       {.text = "Lengths are in metres, as in the URDF, or have a unit of their own (5mm). Writes "
                "NAME.spheres.urdf, NAME.srdf, NAME.curobo.yml, NAME.xrdf, NAME.foam.json, "
                "NAME.spheres.json, NAME.LINK.tree, NAME.pairs and NAME.report.json, NAME being the "
-               "robot's "
-               "name.",
+               "robot's name.",
        .exit_codes = "0 proved for every link; 1 not proved for links that are named (the files "
                      "are written and say so), or the share of false alarms is not reached",
-       .examples = {"spherule robot robot.urdf -o spheres",
-                    "spherule robot robot.urdf -o spheres --max-error 20mm --format curobo,tree",
-                    "spherule robot robot.urdf -o spheres --false-alarms 1%",
-                    "spherule robot robot.urdf -o spheres --geometry visual --link "
-                    "hand:max-error=5mm",
-                    "spherule robot robot.urdf -o spheres --package parts=../parts --srdf "
-                    "robot.srdf"}}));
-  command->callback([arguments, command, &exit_code] {
+       .examples = {
+           "spherule robot robot.urdf -o spheres",
+           "spherule robot robot.urdf -o spheres --max-error 20mm --format curobo,tree",
+           "spherule robot robot.urdf -o spheres --false-alarms 1%",
+           "spherule robot robot.urdf -o spheres --geometry visual --link hand:max-error=5mm",
+           "spherule robot robot.urdf -o spheres --package parts=../parts --srdf robot.srdf"}}));
+  command->callback([arguments, &exit_code] {
     arguments->lengths.convert(metres());
-    arguments->has_max_error = command->count("--max-error") > 0;
     exit_code = cover_links(*arguments);
   });
 }

@@ -4,6 +4,7 @@
 #include "cli/commands/command.h"
 #include "cli/files/files.h"
 #include "cli/help/help.h"
+#include "cli/options/options.h"
 #include "cli/text/json.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
@@ -18,7 +19,6 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -111,33 +111,25 @@ Json to_json(const DistanceResult& result) {
           {"leaf_tests", result.cost.leaf_tests}};
 }
 
-void print(const CollisionResult& result, const std::optional<DistanceResult>& separation) {
-  std::cout << name_of(result.verdict) << "\n";
-  if (!result.pairs.empty()) {
-    std::cout << "overlapping pairs of spheres: " << result.pairs.size() << ", the first is "
-              << result.pairs.front().a << " with " << result.pairs.front().b << "\n";
-  }
-  if (separation) {
-    std::cout << "distance: " << separation->lower << " to " << separation->upper
-              << ", between the spheres " << separation->nearest.a << " and "
-              << separation->nearest.b << "\n";
-  }
-}
-
 int run_collide(const CollideArguments& arguments) {
   const Pose world_from_a = parse_pose(arguments.pose_a, "--pose-a");
   const Pose world_from_b = parse_pose(arguments.pose_b, "--pose-b");
   const SphereTree a = load_tree(arguments.tree_a);
   const SphereTree b = load_tree(arguments.tree_b);
   const CollisionResult result = collide(a, world_from_a, b, world_from_b);
-  std::optional<DistanceResult> separation;
-  if (arguments.distance) separation = distance(a, world_from_a, b, world_from_b);
+  Json json = to_json(result);
+  if (arguments.distance) json["distance"] = to_json(distance(a, world_from_a, b, world_from_b));
   if (arguments.json) {
-    Json json = to_json(result);
-    if (separation) json["distance"] = to_json(*separation);
     std::cout << to_text(json);
   } else {
-    print(result, separation);
+    std::cout << filled("{verdict}\n", json);
+    if (!result.pairs.empty()) {
+      std::cout << "overlapping pairs of spheres: " << result.pairs.size()
+                << filled(", the first is {pairs.0.0} with {pairs.0.1}\n", json);
+    }
+    std::cout << lines(json, {{"distance",
+                               "distance: {distance.lower} to {distance.upper}, between the "
+                               "spheres {distance.nearest.0} and {distance.nearest.1}\n"}});
   }
   return result.verdict == Verdict::kFree ? kYes : kNo;
 }
@@ -147,13 +139,9 @@ int run_collide(const CollideArguments& arguments) {
 void add_tree(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("tree", "Build the sphere tree of a set of spheres");
   auto arguments = std::make_shared<TreeArguments>();
-  command->add_option("spheres", arguments->spheres, "Spheres (JSON)")
-      ->required()
-      ->type_name(kFile);
-  command
-      ->add_option("-o,--output", arguments->tree,
-                   "Where the tree goes (default: the name of the spheres with .tree, here)")
-      ->type_name(kFile);
+  add_file_argument(*command, "spheres", arguments->spheres, "Spheres (JSON)");
+  add_file(*command, "-o,--output", arguments->tree,
+           "Where the tree goes (default: the name of the spheres with .tree, here)");
   command->footer(
       to_text({.text = "A tree is what `spherule collide` checks, and load_tree() loads.",
                .exit_codes = "0 done",
@@ -165,8 +153,8 @@ void add_collide(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("collide", "Check two placed trees; exit 0 free, 1 collision");
   auto arguments = std::make_shared<CollideArguments>();
-  command->add_option("a", arguments->tree_a, "First tree")->required()->type_name(kFile);
-  command->add_option("b", arguments->tree_b, "Second tree")->required()->type_name(kFile);
+  add_file_argument(*command, "a", arguments->tree_a, "First tree");
+  add_file_argument(*command, "b", arguments->tree_b, "Second tree");
   const char* pose_help = "\"x y z qx qy qz qw\" (default: the identity)";
   command->add_option("--pose-a", arguments->pose_a, pose_help);
   command->add_option("--pose-b", arguments->pose_b, pose_help);

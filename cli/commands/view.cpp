@@ -4,16 +4,16 @@
 #include "cli/files/files.h"
 #include "cli/files/model.h"
 #include "cli/help/help.h"
-#include "cli/options/robot_options.h"
 #include "cli/pages/view_files.h"
 #include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
-#include "cli/robots/sphere_input.h"
+#include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -60,11 +60,11 @@ ViewScene load_scene(const ViewArguments& arguments) {
 int view(ViewArguments& arguments) {
   if (arguments.page.empty())
     arguments.page = default_output(arguments.files.front(), ".html", FileKind::kPage);
-  check_outputs({arguments.page}, {});
-  for (const std::string& file : arguments.files) check_outputs({arguments.page}, {file});
+  std::vector<std::filesystem::path> inputs(arguments.files.begin(), arguments.files.end());
 #ifdef SPHERULE_HAS_ROBOT
-  check_outputs({arguments.page}, {arguments.robot.postures.file});
+  inputs.emplace_back(arguments.robot.postures.file);
 #endif
+  check_outputs({arguments.page}, inputs);
   write_page(arguments.page, load_scene(arguments));
   std::cout << page_line(arguments.page);
   return kYes;
@@ -76,26 +76,18 @@ void add_view(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "view", "Make a page that shows meshes, spheres, trees, leaks and a robot in one scene");
   auto arguments = std::make_shared<ViewArguments>();
+  add_file_argument(*command, "files", arguments->files,
+                    "Meshes, spheres (JSON), trees, reports of `fit`, what `audit --json` printed, "
+                    "in one unit; a robot's URDF, files of its spheres, its SRDF and NAME.pairs");
+  add_file(*command, "-o,--output", arguments->page,
+           "Where the page goes (default: the name of the first file with .html, here)");
+  command->add_flag("--leaks", arguments->leaks,
+                    "Colour by depth what of the meshes is outside of the spheres, found by "
+                    "samples; `audit` proves");
   command
-      ->add_option(
-          "files", arguments->files,
-          "Meshes, spheres (JSON), trees, reports of `fit`, what `audit --json` printed, in "
-          "one unit; a robot's URDF, files of its spheres, its SRDF and NAME.pairs")
-      ->required()
-      ->type_name(kFile);
-  command
-      ->add_option("-o,--output", arguments->page,
-                   "Where the page goes (default: the name of the first file with .html, here)")
-      ->type_name(kFile);
-  command->add_flag(
-      "--leaks", arguments->leaks,
-      "Colour by depth what of the meshes is outside of the spheres, found by samples; "
-      "`audit` proves");
-  command
-      ->add_option(
-          "--units", arguments->units,
-          "Show in this unit meshes whose files state one, and spheres fitted with --units; "
-          "others are taken to be in it")
+      ->add_option("--units", arguments->units,
+                   "Show in this unit meshes whose files state one, and spheres fitted with "
+                   "--units; others are taken to be in it")
       ->check(CLI::IsMember(unit_choices()));
 #ifdef SPHERULE_HAS_ROBOT
   command
@@ -106,21 +98,17 @@ void add_view(CLI::App& app, int& exit_code) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_package_option(*command, arguments->robot.packages);
-  CLI::Option* poses =
-      command
-          ->add_option("--poses", arguments->robot.postures.file,
-                       "Postures of the robot to step through, one a line (as the trajectories "
-                       "that check reads)")
-          ->type_name(kFile);
+  CLI::Option* poses = add_file(
+      *command, "--poses", arguments->robot.postures.file,
+      "Postures of the robot to step through, one a line (as the trajectories that check reads)");
   add_degrees_flag(*command, "Angles of --poses are in degrees, lengths in metres",
                    arguments->robot.postures)
       ->needs(poses);
   add_unknown_links_flag(*command, arguments->robot.ignores_unknown_links);
 #endif
   command->footer(to_text(
-      {.text =
-           "The page is one file, which any browser opens, without network or server. Two sets of "
-           "spheres for one mesh or one robot stand side by side, with their leaks.",
+      {.text = "The page is one file, which any browser opens, without network or server. Two sets "
+               "of spheres for one mesh or one robot stand side by side, with their leaks.",
        .exit_codes = "0 done",
        .examples = {
            "spherule view part.stl part.json part.tree -o part.html",

@@ -220,39 +220,29 @@ bool has_mesh_ending(const std::filesystem::path& path) {
 }
 
 std::string offer_for(FileKind kind, const std::string& file) {
-  switch (kind) {
-    case FileKind::kMesh:
-      return "a mesh (spherule fit " + file + " covers it with spheres)";
-    case FileKind::kCad:
-      return "a CAD part (spherule fit " + file + " covers it with spheres)";
-    case FileKind::kSpheres:
-      return "a set of spheres (spherule tree " + file + " builds its tree)";
-    case FileKind::kTree:
-      return "a sphere tree (spherule collide " + file + " OTHER.tree checks it)";
-    case FileKind::kUrdf:
-      return "a robot (spherule robot " + file + " covers it with spheres)";
-    case FileKind::kSrdf:
-      return "an SRDF (spherule check-srdf ROBOT.urdf " + file + " judges its pairs)";
-    case FileKind::kRobotSpheres:
-      return "a file of a robot's spheres (spherule audit-robot ROBOT.urdf " + file +
-             " proves whether they cover)";
-    case FileKind::kPairs:
-      return "a file of proofs of pairs of links (spherule check ... --pairs " + file + ")";
-    case FileKind::kScene:
-      return "a scene (spherule check ROBOT.urdf " + file + " PATH.csv checks a robot in it)";
-    case FileKind::kZones:
-      return "a file of zones (spherule fit MESH --zones " + file + ")";
-    case FileKind::kTable:
-      return "a table of numbers (spherule check ROBOT.urdf SCENE.json " + file +
-             " checks it as a trajectory; a scene takes clouds of points)";
-    case FileKind::kReport:
-      return "a report (spherule view " + file + " shows what it has)";
-    case FileKind::kPage:
-      return "a page of spherule view (a browser shows it)";
-    case FileKind::kUnknown:
-      break;
-  }
-  return {};
+  static const std::map<FileKind, std::string> kOffers = {
+      {FileKind::kMesh, "a mesh (spherule fit FILE covers it with spheres)"},
+      {FileKind::kCad, "a CAD part (spherule fit FILE covers it with spheres)"},
+      {FileKind::kSpheres, "a set of spheres (spherule tree FILE builds its tree)"},
+      {FileKind::kTree, "a sphere tree (spherule collide FILE OTHER.tree checks it)"},
+      {FileKind::kUrdf, "a robot (spherule robot FILE covers it with spheres)"},
+      {FileKind::kSrdf, "an SRDF (spherule check-srdf ROBOT.urdf FILE judges its pairs)"},
+      {FileKind::kRobotSpheres,
+       "a file of a robot's spheres (spherule audit-robot ROBOT.urdf FILE proves whether they "
+       "cover)"},
+      {FileKind::kPairs, "a file of proofs of pairs of links (spherule check ... --pairs FILE)"},
+      {FileKind::kScene, "a scene (spherule check ROBOT.urdf FILE PATH.csv checks a robot in it)"},
+      {FileKind::kZones, "a file of zones (spherule fit MESH --zones FILE)"},
+      {FileKind::kTable,
+       "a table of numbers (spherule check ROBOT.urdf SCENE.json FILE checks it as a trajectory; a "
+       "scene takes clouds of points)"},
+      {FileKind::kReport, "a report (spherule view FILE shows what it has)"},
+      {FileKind::kPage, "a page of spherule view (a browser shows it)"}};
+  const auto found = kOffers.find(kind);
+  if (found == kOffers.end()) return {};
+  std::string offer = found->second;
+  const std::size_t at = offer.find("FILE");
+  return at == offer.npos ? offer : offer.replace(at, 4, file);
 }
 
 std::string wrong_file_hint(const CLI::App& app, const std::string& message) {

@@ -15,7 +15,6 @@
 #include <filesystem>
 #include <limits>
 #include <set>
-#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -23,12 +22,6 @@ namespace spherule {
 namespace {
 
 constexpr double kMicrometresPerMetre = 1e6;
-
-std::string number(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 // How the unit of the output is known: `own` is what the file states, `read` what it is read in.
 std::string origin_of(const std::string& own, const std::string& read, const char* stated_by,
@@ -240,13 +233,11 @@ ModelReadOptions stored_reading(const SphereFile& file) {
 }
 
 std::string describe(const CadPart& part) {
-  std::ostringstream text;
-  text << "CAD part: " << part.faces << " faces, chord error "
-       << (part.proved ? "proved to be at most " : "measured, not proved: ") << part.chord_error
-       << " (asked " << part.asked << ", found " << part.reached << "), added to the padding";
-  if (part.free_edges > 0) text << "; " << part.free_edges << " edges of no face left out";
-  text << "\n";
-  return text.str();
+  return concat(
+      "CAD part: ", part.faces, " faces, chord error ",
+      part.proved ? "proved to be at most " : "measured, not proved: ", part.chord_error,
+      " (asked ", part.asked, ", found ", part.reached, "), added to the padding",
+      part.free_edges > 0 ? concat("; ", part.free_edges, " edges of no face left out") : "", "\n");
 }
 
 Json to_json(const CadPart& part) {
@@ -280,11 +271,6 @@ std::vector<ModelUnit> model_units(const std::vector<std::string>& files,
                           ": say in which unit all are to come out, --units mm for instance");
   }
   return units;
-}
-
-LengthContext length_context(const std::vector<std::string>& files,
-                             const std::vector<ModelUnit>& units) {
-  return length_context(files.front(), units.front());
 }
 
 ModelBodies read_bodies(const std::vector<std::string>& files, const std::vector<ModelUnit>& units,

@@ -106,10 +106,6 @@ struct ModelBodies {
 std::vector<ModelUnit> model_units(const std::vector<std::string>& files,
                                    const UnitArguments& arguments);
 
-// The context of lengths on the command line for them.
-LengthContext length_context(const std::vector<std::string>& files,
-                             const std::vector<ModelUnit>& units);
-
 // Reads a body a file, named as the file without its ending; of CAD files every body of the
 // assembly if they are to be `split`, where there are several files after the name of theirs. Warns
 // on standard error of bodies whose deviation is not proved. Throws Error, also for a file that is

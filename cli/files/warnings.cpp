@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/files/warnings.h"
 
+#include "cli/text/print.h"
+
 #include <array>
 #include <optional>
 #include <span>
-#include <sstream>
 
 namespace spherule {
 namespace {
@@ -60,28 +61,23 @@ std::string unit_advice(const UnitMixup& mixup, double error, double extent,
   if (unit.micrometres && known == nullptr) return "";
   const std::optional<UnitPair> units = likely_units(mixup, error, extent, known);
   if (!units) return "";
-  std::ostringstream text;
   if (known != nullptr) {
-    text << ": both are in " << known->plural << " (" << unit.origin
-         << "); if the error was meant in " << units->meant->plural << ", use --max-error " << error
-         << units->meant->symbol;
-  } else {
-    text << ": if that is in " << units->mesh->plural << " and the error was meant in "
-         << units->meant->plural << ", use --max-error " << error * units->factor()
-         << ", or the same with --scale " << 1.0 / units->factor();
+    return concat(": both are in ", known->plural, " (", unit.origin,
+                  "); if the error was meant in ", units->meant->plural, ", use --max-error ",
+                  error, units->meant->symbol);
   }
-  return text.str();
+  return concat(": if that is in ", units->mesh->plural, " and the error was meant in ",
+                units->meant->plural, ", use --max-error ", error * units->factor(),
+                ", or the same with --scale ", 1.0 / units->factor());
 }
 
 }  // namespace
 
 std::string larger_diameter_warning(double min_external_diameter) {
-  std::ostringstream text;
-  text << "the part is so large for its max error that a min external diameter of "
-       << min_external_diameter
-       << " was chosen, instead of four times the max error: gaps that are narrower are filled; "
-          "for a smaller one fit the part in pieces, or with a larger max error";
-  return text.str();
+  return concat("the part is so large for its max error that a min external diameter of ",
+                min_external_diameter, " was chosen, instead of four times the max error: gaps ",
+                "that are narrower are filled; for a smaller one fit the part in pieces, or with ",
+                "a larger max error");
 }
 
 std::vector<std::string> result_warnings(const Simplification& result) {
@@ -92,25 +88,20 @@ std::vector<std::string> result_warnings(const Simplification& result) {
   const double step = external.grid_step;
   const double scallops = step > 0.0 ? step * step / (2.0 * diameter) : 0.0;
   if (scallops > kLargestScallops * result.options.max_error) {
-    std::ostringstream text;
-    text << "the part is so large that the grid of stage 1 has steps of " << step
-         << ": what is covered has scallops up to " << scallops
-         << " high along its walls, which takes some more spheres; a larger min external diameter, "
-            "or the part in pieces, avoids that";
-    warnings.push_back(text.str());
+    warnings.push_back(concat(
+        "the part is so large that the grid of stage 1 has steps of ", step,
+        ": what is covered has scallops up to ", scallops, " high along its walls, which takes ",
+        "some more spheres; a larger min external diameter, or the part in pieces, avoids that"));
   }
   const std::optional<double>& ratio = result.certificate.volume_ratio;
   if (ratio && *ratio > kLargestVolume) {
-    std::ostringstream text;
-    text << "the spheres hold about " << *ratio << " times the volume of the mesh: the max error "
-         << result.options.max_error;
-    if (external.padding > result.options.max_error) {
-      text << " or the padding " << external.padding;
-    }
-    text << " is coarse for it, or spaces are filled that a sphere of the min external diameter "
-         << result.options.min_external_diameter
-         << " cannot enter; if that is not wanted, choose less of one of them";
-    warnings.push_back(text.str());
+    const double error = result.options.max_error;
+    warnings.push_back(concat(
+        "the spheres hold about ", *ratio, " times the volume of the mesh: the max error ", error,
+        external.padding > error ? concat(" or the padding ", external.padding) : "",
+        " is coarse for it, or spaces are filled that a sphere of the min external diameter ",
+        result.options.min_external_diameter,
+        " cannot enter; if that is not wanted, choose less of one of them"));
   }
   return warnings;
 }
@@ -121,25 +112,19 @@ std::vector<std::string> length_warnings(const MeshReport& mesh, const SimplifyO
   const double extent = mesh.box.isEmpty() ? 0.0 : mesh.box.sizes().maxCoeff();
   const double error = options.max_error;
   if (error > kLargestError * extent && extent > 0.0) {
-    std::ostringstream text;
-    text << "the max error " << error
-         << " is more than a tenth of the part, whose largest extent is " << extent
-         << unit_advice(kTooLarge, error, extent, unit);
-    warnings.push_back(text.str());
+    warnings.push_back(concat("the max error ", error, " is more than a tenth of the part, whose ",
+                              "largest extent is ", extent,
+                              unit_advice(kTooLarge, error, extent, unit)));
   } else if (error > 0.0 && error < kSmallestError * extent) {
-    std::ostringstream text;
-    text << "the max error " << error
-         << " is less than a thousandth of the part, whose largest extent is " << extent
-         << ", which may take very many spheres and hours"
-         << unit_advice(kTooSmall, error, extent, unit);
-    warnings.push_back(text.str());
+    warnings.push_back(concat("the max error ", error, " is less than a thousandth of the part, ",
+                              "whose largest extent is ", extent, ", which may take very many ",
+                              "spheres and hours", unit_advice(kTooSmall, error, extent, unit)));
   }
   const double diameter = options.min_external_diameter;
   if (diameter > 0.0 && diameter < kLeastDiameter * error) {
-    std::ostringstream text;
-    text << "the min external diameter " << diameter << " is less than a tenth of the max error "
-         << error << ": nearly nothing is simplified away; are both in the same unit?";
-    warnings.push_back(text.str());
+    warnings.push_back(concat("the min external diameter ", diameter, " is less than a tenth of ",
+                              "the max error ", error, ": nearly nothing is simplified away; are ",
+                              "both in the same unit?"));
   }
   return warnings;
 }

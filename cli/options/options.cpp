@@ -59,6 +59,38 @@ std::string check_positive(const std::string& text) {
   return check(text, "must be finite and above 0", [](double x) { return x > 0.0; });
 }
 
+CLI::Option* add_file(CLI::App& command, const std::string& names, std::string& file,
+                      const std::string& help) {
+  return command.add_option(names, file, help)->type_name(kFile);
+}
+
+CLI::Option* add_file(CLI::App& command, const std::string& names, std::vector<std::string>& files,
+                      const std::string& help) {
+  return command.add_option(names, files, help)->type_name(kFile);
+}
+
+void add_file_argument(CLI::App& command, const std::string& name, std::string& file,
+                       const std::string& help) {
+  add_file(command, name, file, help)->required();
+}
+
+void add_file_argument(CLI::App& command, const std::string& name, std::vector<std::string>& files,
+                       const std::string& help) {
+  add_file(command, name, files, help)->required();
+}
+
+void repeat(const CLI::App& command, std::initializer_list<const char*> options,
+            std::vector<std::string>& words) {
+  for (const char* name : options) {
+    const CLI::Option* option = command.get_option(name);
+    const bool is_flag = option->get_type_size() == 0;
+    for (const std::string& value : option->results()) {
+      words.emplace_back(name);
+      if (!is_flag) words.push_back(value);
+    }
+  }
+}
+
 void add_threads_option(CLI::App& command, int& threads, const std::string& result) {
   command.add_option("--threads", threads, "Threads, 0: all; " + result)->check(check_not_negative);
 }
@@ -86,8 +118,8 @@ void add_search_options(CLI::App& command, const SearchOptions& options,
 void add_external_spheres_flag(CLI::App& command, ReportContent& content) {
   command.add_flag_callback(
       "--external-spheres", [&content] { content = ReportContent::kAll; },
-      "List every external sphere in the report, about 100 bytes each: for view, and for who "
-      "wants to check what was simplified away");
+      "List every external sphere in the report, about 100 bytes each: for view, and for who wants "
+      "to check what was simplified away");
 }
 
 ShardRange range_of(const Shard& shard, std::size_t count) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,20 @@ namespace spherule {
 // (The messages of CLI11's own checks hold the largest number there is, of 309 digits.)
 std::string check_not_negative(const std::string& text);
 std::string check_positive(const std::string& text);
+
+// Adds an option that takes a file, or several; an argument that has to be there.
+CLI::Option* add_file(CLI::App& command, const std::string& names, std::string& file,
+                      const std::string& help);
+CLI::Option* add_file(CLI::App& command, const std::string& names, std::vector<std::string>& files,
+                      const std::string& help);
+void add_file_argument(CLI::App& command, const std::string& name, std::string& file,
+                       const std::string& help);
+void add_file_argument(CLI::App& command, const std::string& name, std::vector<std::string>& files,
+                       const std::string& help);
+
+// Adds those of the options that were given to a command, as they were, to the words of another.
+void repeat(const CLI::App& command, std::initializer_list<const char*> options,
+            std::vector<std::string>& words);
 
 // Adds --threads to a command, with what is said of its result.
 void add_threads_option(CLI::App& command, int& threads,

@@ -2,10 +2,10 @@
 #include "cli/pages/check_view.h"
 
 #include "base/error.h"
-#include "cli/options/robot_options.h"
 #include "cli/pages/view_page.h"
 #include "cli/pages/view_robot.h"
 #include "cli/robots/check_report.h"
+#include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 #include "io/sphere_file.h"
 #include "robot/check/scene_setup.h"

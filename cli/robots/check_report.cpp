@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iomanip>
 #include <iterator>
 #include <span>
-#include <sstream>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -41,23 +39,6 @@ const TouchingPair* deepest(const CheckReport& report) {
 
 const char* name_of(ContinuousMotion continuous) {
   return continuous == ContinuousMotion::kAsGiven ? "as-given" : "shortest";
-}
-
-// Which motions of continuous joints were proved.
-void put_continuous(std::ostream& out, const CheckReport& report) {
-  if (!report.turns.continuous) return;
-  const TurningMotions& turning = report.turns.turning;
-  out << "continuous joints turn "
-      << (report.turns.continuous == ContinuousMotion::kAsGiven
-              ? "as given, straight from number to number"
-              : "the shorter way, by at most half a turn");
-  if (turning.count > 0) {
-    out << "; " << describe(turning, report.is_in_degrees);
-    if (report.turns.continuous == ContinuousMotion::kShortest) {
-      out << " as given, here by " << angle_text(turning.shorter, report.is_in_degrees);
-    }
-  }
-  out << "\n";
 }
 
 Json to_json(const OutsideLimits& outside, bool enforced) {
@@ -110,21 +91,6 @@ Json to_json(const FoundContact& found) {
   return json;
 }
 
-std::string text_of(const TrajectoryPoint& point) {
-  std::ostringstream text;
-  text << point.line;
-  if (point.to_line > 0) {
-    text << "-" << point.to_line << " at " << std::fixed << std::setprecision(4) << point.fraction;
-  }
-  return text.str();
-}
-
-std::string text_of(const Eigen::Vector3d& point) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(4) << point.x() << " " << point.y() << " " << point.z();
-  return text.str();
-}
-
 // -1 for what is no link.
 int link_of(const RobotModel& robot, const CheckedBody& body) {
   return body.kind == CheckedBody::Kind::kLink ? robot.find_link(body.name) : -1;
@@ -141,23 +107,6 @@ std::string kind_of_contact(const PairStatus& status) {
       break;
   }
   return "unknown";
-}
-
-std::string overlap_in_mm(double metres) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << metres * kMillimetresPerMetre;
-  return text.str();
-}
-
-// Pairs whose spheres overlap though they are free, a line each.
-void put_proved_free(std::ostream& out, const CheckReport& report) {
-  for (const TouchingPair& pair : report.found.proved_free) {
-    const CheckedContact& worst = pair.worst.contact;
-    out << "free though spheres overlap: " << one_line(worst.first.name) << " and "
-        << one_line(worst.second.name) << (pair.kind.empty() ? "" : " (" + pair.kind + ")")
-        << ", in " << pair.count << " of " << report.found.explained << " configurations, up to "
-        << overlap_in_mm(worst.overlap_depth) << " mm\n";
-  }
 }
 
 Json to_json(const TouchingPair& pair) {
@@ -272,8 +221,7 @@ class TrajectoryCheck {
   // Where a motion first touches, and at places on the rest of it: of every two bodies that touch
   // there the first and the deepest contact.
   void explain_motion(std::size_t motion, double contact_at) {
-    std::vector<std::pair<FoundContact, FoundContact>> found;
-    PairIndex index;
+    PairCounter found;
     for (std::size_t k = 0; k <= places_; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(places_);
       const TrajectoryPoint at{.line = trajectory_.lines[motion],
@@ -283,17 +231,10 @@ class TrajectoryCheck {
           trajectory_.configuration(motion), trajectory_.configuration(motion + 1), at.fraction,
           options_.edge.continuous);
       for (const CheckedContact& contact : checker_.explain(configuration, scratches_.front())) {
-        const FoundContact here{at, contact};
-        const auto known = index.find_or_add(contact, found.size());
-        if (!known) {
-          found.emplace_back(here, here);
-        } else if (FoundContact& deepest = found[*known].second;
-                   contact.overlap_depth > deepest.contact.overlap_depth) {
-          deepest = here;
-        }
+        found.add({at, contact}, {at, contact});
       }
     }
-    for (const auto& [first, deepest] : found) pairs_.add(first, deepest);
+    for (const TouchingPair& pair : found.take()) pairs_.add(pair.first, pair.worst);
   }
 
   // How many places of a motion are searched: 24, of trajectories of more than 1,666 configurations
@@ -323,21 +264,13 @@ const char* verdict_of(const CheckReport& report) {
   return report.is_free() ? "free" : "not proved";
 }
 
-std::optional<std::size_t> PairIndex::find_or_add(const CheckedContact& contact, std::size_t next) {
-  const auto [place, is_new] = places_.try_emplace({contact.first.name, contact.second.name}, next);
-  return is_new ? std::nullopt : std::optional(place->second);
-}
-
 void PairCounter::add(const FoundContact& first, const FoundContact& deepest) {
-  const std::optional<std::size_t> known = places_.find_or_add(first.contact, pairs_.size());
-  const std::size_t at_start = first.at.fraction == 0.0 ? 1 : 0;
-  if (!known) {
-    pairs_.push_back({1, at_start, first, deepest});
-    return;
-  }
-  TouchingPair& pair = pairs_[*known];
+  const auto [place, is_new] =
+      places_.try_emplace({first.contact.first.name, first.contact.second.name}, pairs_.size());
+  if (is_new) pairs_.push_back({.first = first, .worst = deepest});
+  TouchingPair& pair = pairs_[place->second];
   ++pair.count;
-  pair.at_start += at_start;
+  pair.at_start += first.at.fraction == 0.0 ? 1 : 0;
   if (deepest.contact.overlap_depth > pair.worst.contact.overlap_depth) pair.worst = deepest;
 }
 
@@ -370,51 +303,7 @@ std::vector<TouchingPair> always_touching(const CheckReport& report) {
   return result;
 }
 
-std::string check_table(const CheckReport& report) {
-  std::ostringstream text;
-  if (report.shard.of > 1)
-    text << "shard " << report.shard.index << " of " << report.shard.of << ", ";
-  text << verdict_of(report) << ": " << report.configurations << " configurations";
-  if (report.found.motions) {
-    text << ", " << *report.found.motions << " motions, " << report.found.colliding
-         << " of them collide, " << report.found.not_proved.size() << " are not proved free\n";
-  } else {
-    text << ", " << report.found.colliding << " of them collide\n";
-  }
-  if (!report.given_spheres.empty()) {
-    text << "this is about the spheres of " << one_line(report.given_spheres)
-         << " as given; whether they cover the robot is for spherule audit-robot to prove\n";
-  }
-  put_continuous(text, report);
-  if (report.is_out_of_bounds()) {
-    text << describe(report.outside, report.configurations, report.is_in_degrees) << "\n";
-  }
-  if (!report.found.pairs.empty()) {
-    const bool has_kinds = std::any_of(report.found.pairs.begin(), report.found.pairs.end(),
-                                       [](const TouchingPair& pair) { return !pair.kind.empty(); });
-    std::vector<std::vector<std::string>> rows = {{"body", "touches", "times", "first at line",
-                                                   "deepest at line", "depth there/mm", "where/m",
-                                                   has_kinds ? "kind" : ""}};
-    for (const TouchingPair& pair : report.found.pairs) {
-      const CheckedContact& worst = pair.worst.contact;
-      rows.push_back({worst.first.name, worst.second.name, std::to_string(pair.count),
-                      text_of(pair.first.at), text_of(pair.worst.at),
-                      overlap_in_mm(worst.overlap_depth), text_of(worst.world_point), pair.kind});
-    }
-    text << aligned(rows);
-  }
-  put_proved_free(text, report);
-  constexpr std::size_t kMost = 20;
-  for (std::size_t i = 0; i < std::min(kMost, report.found.not_proved.size()); ++i) {
-    text << "not proved beyond line " << text_of(report.found.not_proved[i]) << "\n";
-  }
-  if (report.found.not_proved.size() > kMost) {
-    text << "and " << report.found.not_proved.size() - kMost << " more\n";
-  }
-  return text.str();
-}
-
-std::string check_json(const CheckReport& report) {
+Json check_json(const CheckReport& report) {
   Json json{{"verdict", verdict_of(report)}, {"configurations", report.configurations}};
   if (report.found.motions) json["motions"] = *report.found.motions;
   json["spheres"] = report.given_spheres.empty() ? "proved" : "given";
@@ -440,7 +329,64 @@ std::string check_json(const CheckReport& report) {
   for (const TrajectoryPoint& point : report.found.not_proved) {
     json["not_proved"].push_back(to_json(point, "free_until"));
   }
-  return to_text(json);
+  return json;
+}
+
+std::string check_table(const CheckReport& report, const Json& json) {
+  std::string text = lines(json, {{"shard", "shard {shard.index} of {shard.of}, "},
+                                  {"", "{verdict}: {configurations} configurations"},
+                                  {"motions", ", {} motions"},
+                                  {"", ", {colliding} of them collide"}});
+  if (report.found.motions) {
+    text += concat(", ", report.found.not_proved.size(), " are not proved free");
+  }
+  text += "\n";
+  if (!report.given_spheres.empty()) {
+    text += "this is about the spheres of " + one_line(report.given_spheres) +
+            " as given; whether they cover the robot is for spherule audit-robot to prove\n";
+  }
+  text += describe(report.turns, report.is_in_degrees);
+  if (report.is_out_of_bounds()) {
+    text += describe(report.outside, report.configurations, report.is_in_degrees) + "\n";
+  }
+  Json pairs = json["pairs"];
+  for (Json& pair : pairs) {
+    for (const char* contact : {"first_contact", "worst_contact"}) {
+      pair[contact]["at"] =
+          lines(pair[contact], {{"", "{line}"}, {"to_line", "-{} at {fraction:f4}"}});
+    }
+    pair.emplace("kind", "");
+  }
+  if (!pairs.empty()) {
+    const bool has_kinds = std::ranges::any_of(
+        report.found.pairs, [](const TouchingPair& pair) { return !pair.kind.empty(); });
+    text +=
+        table(pairs,
+              {{"body", "{first}"},
+               {"touches", "{second}"},
+               {"times", "{count}"},
+               {"first at line", "{first_contact.at}"},
+               {"deepest at line", "{worst_contact.at}"},
+               {"depth there/mm", "{worst_contact.depth:mmf2}"},
+               {"where/m",
+                "{worst_contact.point.0:f4} {worst_contact.point.1:f4} {worst_contact.point.2:f4}"},
+               {has_kinds ? "kind" : "", "{kind}"}});
+  }
+  for (const Json& pair : json["proved_free"]) {
+    text += lines(pair, {{"", "free though spheres overlap: {first} and {second}"},
+                         {"kind", " ({})"},
+                         {"", ", in {count}"}}) +
+            concat(" of ", report.found.explained) +
+            filled(" configurations, up to {worst_contact.depth:mmf2} mm\n", pair);
+  }
+  constexpr std::size_t kMost = 20;
+  const std::size_t count = json["not_proved"].size();
+  for (std::size_t i = 0; i < std::min(kMost, count); ++i) {
+    text += filled("not proved beyond line {line}-{to_line} at {free_until:f4}\n",
+                   json["not_proved"][i]);
+  }
+  if (count > kMost) text += concat("and ", count - kMost, " more\n");
+  return text;
 }
 
 std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads) {

@@ -4,6 +4,7 @@
 #include "base/progress.h"
 #include "cli/options/options.h"
 #include "cli/robots/trajectory.h"
+#include "cli/text/json.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_collision.h"
 #include "robot/files/trajectory_file.h"
@@ -30,17 +31,6 @@ struct FoundContact {
   CheckedContact contact;
 };
 
-// Finds two bodies again in a list of their contacts.
-class PairIndex {
- public:
-  // Where the bodies of the contact stand; nothing where they are new, and stand at `next` from
-  // then on.
-  std::optional<std::size_t> find_or_add(const CheckedContact& contact, std::size_t next);
-
- private:
-  std::map<std::pair<std::string, std::string>, std::size_t> places_;
-};
-
 // Two bodies, or a body and an obstacle, that touch somewhere.
 struct TouchingPair {
   std::size_t count = 0;     // of configurations or motions
@@ -65,7 +55,7 @@ class PairCounter {
 
  private:
   std::vector<TouchingPair> pairs_;
-  PairIndex places_;
+  std::map<std::pair<std::string, std::string>, std::size_t> places_;  // in the list, by names
 };
 
 // What was found along a trajectory, at configurations or on motions.
@@ -114,9 +104,9 @@ const char* verdict_of(const CheckReport& report);
 // motion, of two or more: their spheres may be too coarse, or they are meant to touch.
 std::vector<TouchingPair> always_touching(const CheckReport& report);
 
-// For a person, a few lines and a table, and as JSON.
-std::string check_table(const CheckReport& report);
-std::string check_json(const CheckReport& report);
+// As JSON, and of this for a person a few lines and a table.
+Json check_json(const CheckReport& report);
+std::string check_table(const CheckReport& report, const Json& json);
 
 struct TrajectoryCheckOptions {
   // In so many of the first configurations pairs that only proofs keep apart are counted, too.

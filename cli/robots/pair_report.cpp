@@ -11,13 +11,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <iomanip>
 #include <map>
 #include <numbers>
 #include <span>
-#include <sstream>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,17 +34,13 @@ std::size_t count_of(const LinkPairs& pairs, PairVerdict verdict) {
 constexpr std::size_t kShownContacts = 5;
 
 std::string describe(const PostureContact& contact) {
-  std::ostringstream out;
-  out << "in " << contact.posture << " " << contact.first << " and " << contact.second << " touch";
-  if (contact.do_meshes_touch) {
-    out << ", by their meshes, too";
-    return out.str();
-  }
-  out << " by their spheres alone, " << std::fixed << std::setprecision(1)
-      << contact.overlap_depth * kMillimetresPerMetre << " mm deep: "
-      << (contact.is_proved_free ? "free for who takes the proofs (NAME.pairs), " : "")
-      << "a smaller E for either, or --false-alarms, would mend it";
-  return out.str();
+  const std::string touch =
+      concat("in ", contact.posture, " ", contact.first, " and ", contact.second, " touch");
+  if (contact.do_meshes_touch) return touch + ", by their meshes, too";
+  return concat(
+      touch, " by their spheres alone, ", decimal(contact.overlap_depth * kMillimetresPerMetre, 1),
+      " mm deep: ", contact.is_proved_free ? "free for who takes the proofs (NAME.pairs), " : "",
+      "a smaller E for either, or --false-alarms, would mend it");
 }
 
 std::vector<std::string> first_of(const std::vector<PostureContact>& contacts,
@@ -82,10 +75,6 @@ std::shared_ptr<const LinkPairs> proofs_of(const RobotDescription& robot, LinkGe
   options.threads = threads;
   options.progress = bar.callback();
   return std::make_shared<const LinkPairs>(prove_link_pairs(robot.model, bodies, options));
-}
-
-bool is_joined(const PairStatus& pair) {
-  return pair.reason == AllowedReason::kRigid || pair.reason == AllowedReason::kAdjacent;
 }
 
 }  // namespace
@@ -153,14 +142,12 @@ std::vector<std::string> wrong_pairs(const SrdfJudgement& judgement, const Robot
   return warnings;
 }
 
-std::string describe_link_pairs(const LinkPairs& pairs, double seconds) {
-  if (pairs.pairs().empty()) return {};
-  std::ostringstream out;
-  out << "pairs of links: " << count_of(pairs, PairVerdict::kNever)
-      << " proved never to touch within the limits, " << count_of(pairs, PairVerdict::kTouching)
-      << " can touch, " << count_of(pairs, PairVerdict::kUnknown) << " unknown; " << std::fixed
-      << std::setprecision(1) << seconds << " s\n";
-  return out.str();
+std::string describe_link_pairs(const Json& summary) {
+  if (summary["pairs"].empty()) return {};
+  return filled(
+      "pairs of links: {never} proved never to touch within the limits, {touching} can touch, "
+      "{unknown} unknown; {seconds:f1} s\n",
+      summary);
 }
 
 Json posture_json(const RobotModel& robot, const std::vector<double>& configuration) {
@@ -172,17 +159,15 @@ Json posture_json(const RobotModel& robot, const std::vector<double>& configurat
 }
 
 std::string describe_posture(const RobotModel& robot, const std::vector<double>& configuration) {
-  std::ostringstream out;
+  std::string text;
   for (std::size_t i = 0; i < configuration.size(); ++i) {
     const Joint& joint = joint_of(robot, i);
-    out << (i == 0 ? "" : ", ") << one_line(joint.name) << " " << std::fixed;
-    if (joint.turns()) {
-      out << std::setprecision(1) << configuration[i] * 180.0 / std::numbers::pi << " deg";
-    } else {
-      out << std::setprecision(4) << configuration[i] << " m";
-    }
+    const double position = configuration[i];
+    text += (i == 0 ? "" : ", ") + one_line(joint.name) + " " +
+            (joint.turns() ? decimal(position * 180.0 / std::numbers::pi, 1) + " deg"
+                           : decimal(position, 4) + " m");
   }
-  return out.str();
+  return text;
 }
 
 std::vector<std::string> contact_warnings(const std::vector<PostureContact>& contacts) {
@@ -224,26 +209,6 @@ PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
   return kinds;
 }
 
-std::string describe(const PairKinds& kinds) {
-  std::map<std::string_view, std::size_t> counts;
-  for (const PairStatus& pair : kinds.pairs) ++counts[kind_of(pair)];
-  std::ostringstream out;
-  out << "pairs of links: " << kinds.pairs.size();
-  for (const auto& [kind, count] : counts) {
-    out << (kind == counts.begin()->first ? "; " : ", ") << count << " " << kind;
-  }
-  out << "\n";
-  std::vector<std::vector<std::string>> rows = {{"link", "link", "kind", "meshes", "proved free"}};
-  for (const PairStatus& pair : kinds.pairs) {
-    if (is_joined(pair)) continue;
-    rows.push_back({link_name(kinds.model, pair.first), link_name(kinds.model, pair.second),
-                    std::string(kind_of(pair)),
-                    std::string(pair.verdict ? name_of(*pair.verdict) : "-"),
-                    pair.verdict ? percent(pair.free_share, 1) : "-"});
-  }
-  return out.str() + (rows.size() > 1 ? aligned(rows) : "");
-}
-
 Json to_json(const PairKinds& kinds) {
   Json json{{"pairs", Json::array()}};
   for (const PairStatus& pair : kinds.pairs) {
@@ -264,6 +229,26 @@ Json to_json(const PairKinds& kinds) {
     json["disabled_pairs"].push_back(to_json(judged, kinds.model));
   }
   return json;
+}
+
+std::string describe_kinds(const Json& kinds) {
+  std::map<std::string, std::size_t> counts;
+  Json rows = Json::array();
+  for (const Json& pair : kinds["pairs"]) {
+    ++counts[pair["kind"]];
+    if (pair["kind"] != "rigid" && pair["kind"] != "adjacent") rows.push_back(pair);
+  }
+  std::string text = concat("pairs of links: ", kinds["pairs"].size());
+  for (const auto& [kind, count] : counts) {
+    text += concat(kind == counts.begin()->first ? "; " : ", ", count, " ", kind);
+  }
+  if (rows.empty()) return text + "\n";
+  return text + "\n" +
+         table(rows, {{"link", "{links.0}"},
+                      {"link", "{links.1}"},
+                      {"kind", "{kind}"},
+                      {"meshes", "{verdict}"},
+                      {"proved free", "{free_share:%1}"}});
 }
 
 }  // namespace spherule

@@ -38,8 +38,8 @@ std::string describe(const DisabledPair& pair);
 // What is wrong with the disabled pairs of an SRDF, a warning each: two links that touch.
 std::vector<std::string> wrong_pairs(const SrdfJudgement& judgement, const RobotModel& robot);
 
-// The counts, for a person.
-std::string describe_link_pairs(const LinkPairs& pairs, double seconds);
+// Its counts, for a person.
+std::string describe_link_pairs(const Json& summary);
 
 // A posture by the names of the joints, radians and metres.
 Json posture_json(const RobotModel& robot, const std::vector<double>& configuration);
@@ -75,10 +75,10 @@ struct PairKinds {
 PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
                      LinkGeometry geometry, const PairSources& sources, int threads = 0);
 
-// A count of each kind and a table of all pairs but those that are rigid or adjacent.
-std::string describe(const PairKinds& kinds);
-
 // Of every pair its links, kind, verdict and share that is proved free; what is judged of an SRDF.
 Json to_json(const PairKinds& kinds);
+
+// Of this a count of each kind and a table of all pairs but those that are rigid or adjacent.
+std::string describe_kinds(const Json& kinds);
 
 }  // namespace spherule

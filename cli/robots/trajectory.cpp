@@ -12,9 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iomanip>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +49,19 @@ TrajectoryInput shard_of(const TrajectoryArguments& arguments, const Trajectory&
           .outside = {}};
 }
 
+// An angle as the trajectory's file has them.
+std::string angle_text(double radians, bool in_degrees) {
+  return in_degrees ? concat(radians / kRadiansPerDegree, " degrees") : concat(radians, " rad");
+}
+
+// "2 motions turn a continuous joint by more than half a turn, the first from line 1 to ...".
+std::string describe(const TurningMotions& turning, bool in_degrees) {
+  return concat(turning.count, turning.count == 1 ? " motion turns" : " motions turn",
+                " a continuous joint by more than half a turn, the first from line ", turning.line,
+                " to line ", turning.to_line, ": joint ", one_line(turning.joint), " by ",
+                angle_text(turning.step, in_degrees));
+}
+
 }  // namespace
 
 CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
@@ -63,13 +74,10 @@ TrajectoryInput read_configurations(const TrajectoryArguments& arguments, const 
   const Trajectory whole = read_trajectory(arguments.file, robot, unit);
   const DegreesGuess guess = arguments.is_in_degrees ? DegreesGuess() : guess_degrees(robot, whole);
   if (guess.looks_so) {
-    std::ostringstream text;
-    text << arguments.file << ": its angles look like degrees: as radians " << guess.beyond
-         << " of " << guess.angles
-         << " are beyond the limits of their joints or a turn, as degrees none, the first in line "
-         << guess.line << ": joint " << guess.joint << " at " << guess.value
-         << "; --degrees reads them as degrees";
-    warn(text.str());
+    warn(concat(arguments.file, ": its angles look like degrees: as radians ", guess.beyond, " of ",
+                guess.angles, " are beyond the limits of their joints or a turn, as degrees none, ",
+                "the first in line ", guess.line, ": joint ", guess.joint, " at ", guess.value,
+                "; --degrees reads them as degrees"));
   }
   TrajectoryInput input = shard_of(arguments, whole);
   input.outside = outside_limits(robot, part_of(input.trajectory, 0, input.own));
@@ -97,15 +105,12 @@ std::string describe(const OutsideLimits& outside, std::size_t configurations, b
   const char* const unit = !outside.turns ? " m" : in_degrees ? " degrees" : " rad";
   const bool is_above = outside.position > outside.upper;
   const double limit = is_above ? outside.upper : outside.lower;
-  std::ostringstream text;
-  text << outside.count << " of " << configurations << " configurations "
-       << (outside.count == 1 ? "is" : "are") << " outside the joint limits, the first in line "
-       << outside.line << ": joint " << one_line(outside.joint) << " at "
-       << scale * outside.position << unit << ", " << std::setprecision(3)
-       << scale * std::abs(outside.position - limit) << unit << std::setprecision(6)
-       << (is_above ? " above its upper" : " below its lower") << " limit of " << scale * limit
-       << unit;
-  return text.str();
+  return concat(outside.count, " of ", configurations, " configurations ",
+                outside.count == 1 ? "is" : "are", " outside the joint limits, the first in line ",
+                outside.line, ": joint ", one_line(outside.joint), " at ", scale * outside.position,
+                unit, ", ", number(scale * std::abs(outside.position - limit), 3), unit,
+                is_above ? " above its upper" : " below its lower", " limit of ", scale * limit,
+                unit);
 }
 
 Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory) {
@@ -121,23 +126,19 @@ Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory
   return ends;
 }
 
-std::string angle_text(double radians, bool in_degrees) {
-  std::ostringstream text;
-  if (in_degrees) {
-    text << radians / kRadiansPerDegree << " degrees";
-  } else {
-    text << radians << " rad";
+std::string describe(const TurnReview& turns, bool in_degrees) {
+  if (!turns.continuous) return {};
+  const bool is_as_given = turns.continuous == ContinuousMotion::kAsGiven;
+  std::string text = std::string("continuous joints turn ") +
+                     (is_as_given ? "as given, straight from number to number"
+                                  : "the shorter way, by at most half a turn");
+  if (turns.turning.count > 0) {
+    text += "; " + describe(turns.turning, in_degrees);
+    if (!is_as_given) {
+      text += " as given, here by " + angle_text(turns.turning.shorter, in_degrees);
+    }
   }
-  return text.str();
-}
-
-std::string describe(const TurningMotions& turning, bool in_degrees) {
-  std::ostringstream text;
-  text << turning.count << (turning.count == 1 ? " motion turns" : " motions turn")
-       << " a continuous joint by more than half a turn, the first from line " << turning.line
-       << " to line " << turning.to_line << ": joint " << one_line(turning.joint) << " by "
-       << angle_text(turning.step, in_degrees);
-  return text.str();
+  return text + "\n";
 }
 
 TurnReview review_turns(const std::string& urdf, const TrajectoryArguments& arguments,
@@ -150,18 +151,17 @@ TurnReview review_turns(const std::string& urdf, const TrajectoryArguments& argu
   if (review.continuous == ContinuousMotion::kAsGiven) {
     if (review.turning.count == 0) return review;
     warn(file + ": " + describe(review.turning, arguments.is_in_degrees) +
-         "; that way is proved: OMPL and many controllers go the shorter one, which "
-         "--continuous shortest proves");
+         "; that way is proved: OMPL and many controllers go the shorter one, which --continuous "
+         "shortest proves");
     return review;
   }
   blame_file(urdf, [&] { shortest.require(); });
   const TurningMotions half = half_a_turn(robot, trajectory);
   if (half.count == 0) return review;
-  warn(file + ": of " + std::to_string(half.count) + (half.count == 1 ? " motion" : " motions") +
-       " no way is clearly the shorter one, because a continuous joint turns by half a turn, the "
-       "first from line " +
-       std::to_string(half.line) + " to line " + std::to_string(half.to_line) + ": joint " +
-       half.joint + "; a controller may go the other way than what is proved");
+  warn(concat(file, ": of ", half.count, half.count == 1 ? " motion" : " motions",
+              " no way is clearly the shorter one, because a continuous joint turns by half a ",
+              "turn, the first from line ", half.line, " to line ", half.to_line, ": joint ",
+              half.joint, "; a controller may go the other way than what is proved"));
   return review;
 }
 

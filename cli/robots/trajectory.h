@@ -65,11 +65,8 @@ TurnReview review_turns(const std::string& urdf, const TrajectoryArguments& argu
                         ContinuousMotion motion, const RobotModel& robot,
                         const Trajectory& trajectory);
 
-// An angle as the trajectory's file has them: "1.5 rad" or "90 degrees".
-std::string angle_text(double radians, bool in_degrees);
-
-// "2 motions turn a continuous joint by more than half a turn, the first from line 1 to ...".
-std::string describe(const TurningMotions& turning, bool in_degrees);
+// Which way continuous joints turn, as a line for a person; empty of a robot without such motions.
+std::string describe(const TurnReview& turns, bool in_degrees);
 
 // The same trajectory with each configuration where the shortest motion to it ends.
 Trajectory ends_of_motions(const RobotModel& robot, const Trajectory& trajectory);

@@ -115,61 +115,19 @@ void warn_each(const std::string& subject, std::span<const std::string> warnings
   for (const std::string& warning : warnings) warn(subject + ": " + warning);
 }
 
-std::string describe(const Certificate& certificate, const std::string& solid) {
+std::string number(double value, int digits) {
   std::ostringstream out;
-  out << "certificate: " << certificate.sphere_count << " spheres ";
-  if (certificate.covered) {
-    out << "cover " << solid << " (proved)\n";
-  } else {
-    const Bounds& depth = certificate.uncovered_depth;
-    out << "are not proved to cover " << solid << "\n";
-    out << "  leak: a point at a depth of " << depth.lower << ", none deeper than " << depth.upper
-        << "\n";
-    if (depth.lower > 0.0) {
-      // All digits, so that the witness can be checked.
-      const Eigen::Vector3d& leak = certificate.deepest_leak;
-      out << std::setprecision(std::numeric_limits<double>::max_digits10) << "  deepest at ("
-          << leak.x() << ", " << leak.y() << ", " << leak.z() << ")\n"
-          << std::setprecision(6);
-    }
-  }
-  if (certificate.protrusion_over_simplified_max) {
-    out << "  protrusion over the simplified solid: at most "
-        << *certificate.protrusion_over_simplified_max << "\n";
-  }
-  for (std::size_t i = 0; i < certificate.protrusion_in_zones.size(); ++i) {
-    out << "  in zone " << i << ": at most " << certificate.protrusion_in_zones[i] << "\n";
-  }
-  if (certificate.protrusion_over_mesh) {
-    out << "  protrusion over the mesh and its inside: " << certificate.protrusion_over_mesh->lower
-        << " to " << certificate.protrusion_over_mesh->upper << "\n";
-  }
-  if (certificate.volume_ratio) {
-    out << "  volume of the spheres over that of the mesh: about " << *certificate.volume_ratio
-        << "\n";
-  }
-  if (certificate.filled_volume) {
-    out << "  filled by stage 1: about " << *certificate.filled_volume << " (standard error "
-        << *certificate.filled_volume_error << ") in volume\n";
-  }
-  return out.str();
-}
-
-std::string describe(std::span<const CoverLevel> levels) {
-  std::ostringstream out;
-  for (const CoverLevel& level : levels) {
-    out << "level " << level.max_error << ": " << level.spheres.spheres.size()
-        << " spheres, protrusion over the simplified solid at most " << level.protrusion
-        << " (plain clustering: " << level.clustering_count << " spheres, "
-        << level.clustering_protrusion << ")\n";
-  }
+  out << std::setprecision(digits) << value;
   return out.str();
 }
 
 std::string decimal(double value, int digits) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
+  // What is rounded to zero has no sign.
+  const std::string text = out.str();
+  return text.starts_with('-') && text.find_first_of("123456789") == text.npos ? text.substr(1)
+                                                                               : text;
 }
 
 std::string percent(double share, int digits) {
@@ -177,11 +135,7 @@ std::string percent(double share, int digits) {
 }
 
 std::string three_digits(double value, Rounding rounding) {
-  std::ostringstream text;
-  if (value == 0.0 || !std::isfinite(value)) {
-    text << value;
-    return text.str();
-  }
+  if (value == 0.0 || !std::isfinite(value)) return number(value);
   const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
   // A number of three digits is its own bound, however its decimals were rounded.
   constexpr double kSame = 1e-9;
@@ -189,8 +143,7 @@ std::string three_digits(double value, Rounding rounding) {
   const double whole = std::abs(steps - std::round(steps)) < kSame ? std::round(steps)
                        : rounding == Rounding::kUp                 ? std::ceil(steps)
                                                                    : std::floor(steps);
-  text << std::setprecision(3) << whole * step;
-  return text.str();
+  return number(whole * step, 3);
 }
 
 std::string aligned(std::vector<std::vector<std::string>> rows) {
@@ -230,15 +183,6 @@ std::string beside(const std::string& path, const std::string& ending) {
 
 std::string here(const std::string& path, const std::string& ending) {
   return beside(std::filesystem::path(path).filename().string(), ending);
-}
-
-void repeat(const std::string& option, const std::string& value, std::vector<std::string>& words) {
-  if (!value.empty()) words.insert(words.end(), {option, value});
-}
-
-void repeat(const std::string& option, std::optional<double> value,
-            std::vector<std::string>& words) {
-  if (value) repeat(option, internal::number_text(*value), words);
 }
 
 }  // namespace spherule

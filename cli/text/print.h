@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "simplifier/simplify.h"
-
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,11 +22,16 @@ void warn(std::string_view message);
 // "SUBJECT: WARNING" of each.
 void warn_each(const std::string& subject, std::span<const std::string> warnings);
 
-// What a certificate says, in a few lines for a person. `solid` names what was to be covered.
-std::string describe(const Certificate& certificate, const std::string& solid);
+// The parts one after the other, as streams write them.
+template <class... Parts>
+std::string concat(const Parts&... parts) {
+  std::ostringstream out;
+  (out << ... << parts);
+  return out.str();
+}
 
-// A line for every level.
-std::string describe(std::span<const CoverLevel> levels);
+// A number with so many significant digits.
+std::string number(double value, int digits = 6);
 
 // A number with so many digits behind the point.
 std::string decimal(double value, int digits);
@@ -57,12 +61,6 @@ std::string describe(const std::vector<NextStep>& steps);
 std::string beside(const std::string& path, const std::string& ending);
 // The same name in the current folder, where what is made of others' files goes.
 std::string here(const std::string& path, const std::string& ending);
-
-// Adds an option to the words of a command, as it was given to this one, and nothing where it was
-// not (an empty text). Numbers are written so that they are read back without loss.
-void repeat(const std::string& option, const std::string& value, std::vector<std::string>& words);
-void repeat(const std::string& option, std::optional<double> value,
-            std::vector<std::string>& words);
 
 // Robots are stored in metres; people are told millimetres.
 inline constexpr double kMillimetresPerMetre = 1000.0;

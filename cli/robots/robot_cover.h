@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/options/options.h"
 #include "cli/robots/trajectory.h"
+#include "cli/text/json.h"
 #include "robot/cover/goal_cover.h"
 
 #include <cstddef>
@@ -70,5 +72,22 @@ class FalseAlarmRun {
   PairProofs proofs_;
   std::size_t postures_;
 };
+
+// What covering a robot came to, beside the spheres themselves: options, and a link the triangles,
+// spheres, certificate, warnings and seconds; lengths in metres. `seconds` is for all of it.
+Json robot_summary(const std::string& urdf, const RobotCover& cover, double seconds);
+
+// What NAME.report.json holds: the summary, and of each link the simplified solid.
+Json robot_report(const Json& summary, const RobotCover& cover, ReportContent content);
+
+// The summary as a table for a person, lengths in millimetres.
+std::string robot_table(const Json& summary, const RobotCover& cover);
+
+// The false alarms of a cover, for the summary; null if none were counted. Lengths in metres.
+Json false_alarm_summary(const MeasuredCover& measured, const RobotModel& robot);
+
+// The same for a person, with the pairs that refuse most and what would mend them; empty if none
+// were counted. Lengths in millimetres.
+std::string describe_false_alarms(const Json& summary, const MeasuredCover& measured);
 
 }  // namespace spherule
