@@ -140,11 +140,11 @@ TEST_F(SceneFileTest, RefusesOtherFiles) {
   expect_fault("[]", "is not an object");
   expect_fault("{}", "is no scene");
   expect_fault(R"({"format": "spherule-spheres", "version": 1})", "is no scene");
-  expect_fault(R"({"format": "spherule-scene"})", "'version' is missing");
-  expect_fault(R"({"format": "spherule-scene", "version": 2})", "version: is not 1");
+  expect_fault(R"({"format": "spherule-scene"})", "\"version\" is missing");
+  expect_fault(R"({"format": "spherule-scene", "version": 2})", "\"version\" is not 1");
   expect_fault(scene(R"("obstacle": [])"), "the key 'obstacle' is not known here");
   expect_fault(scene(R"("obstacles": [], "obstacles": [])"), "\"obstacles\" appears twice");
-  expect_fault(scene(R"("obstacles": {})"), "obstacles: is not a list");
+  expect_fault(scene(R"("obstacles": {})"), "\"obstacles\" is not a list");
   std::string keys;
   for (int i = 0; i <= 1 << 13; ++i) keys += "\"k" + std::to_string(i) + "\": 0, ";
   expect_fault(scene(R"("robot": {)" + keys + R"("k": 0})"), "too many keys");
@@ -152,7 +152,7 @@ TEST_F(SceneFileTest, RefusesOtherFiles) {
 }
 
 TEST_F(SceneFileTest, RefusesFaultyObstacles) {
-  expect_fault(scene(R"("obstacles": [{"ball": {"radius": 1}}])"), "obstacle 0: 'name'");
+  expect_fault(scene(R"("obstacles": [{"ball": {"radius": 1}}])"), "obstacle 0: \"name\"");
   expect_fault(scene(R"("obstacles": [{"name": "", "ball": {"radius": 1}}])"), "is empty");
   expect_fault(scene(R"("obstacles": [{"name": "a", "half_space": {}},
                                       {"name": "a", "half_space": {}}])"),
@@ -162,16 +162,16 @@ TEST_F(SceneFileTest, RefusesFaultyObstacles) {
                "attached object 0: the name 'a' is there twice");
   expect_fault(obstacle(R"("pose": {})"), "obstacle 0 'table': has no shape: one of mesh");
   expect_fault(obstacle(R"("half_space": {}, "ball": {"radius": 1})"), "has both");
-  expect_fault(obstacle(R"("ball": {"radius": -1})"), "'table', ball: the radius");
+  expect_fault(obstacle(R"("ball": {"radius": -1})"), "'table': \"ball\": the radius");
   expect_fault(obstacle(R"("ball": {"radius": 1e16})"), "is beyond 1e15");
   expect_fault(obstacle(R"("ball": {"radius": "1"})"), "is not a number");
   expect_fault(obstacle(R"("ball": {"radius": 1, "length": 2})"), "the key 'length'");
-  expect_fault(obstacle(R"("ball": {})"), "'radius' is missing");
+  expect_fault(obstacle(R"("ball": {})"), "\"radius\" is missing");
   expect_fault(obstacle(R"("box": {"size": [1, 2]})"), "is not a list of 3 numbers");
   expect_fault(obstacle(R"("box": {"size": [1, 2, 0]})"), "a size of the box");
-  expect_fault(obstacle(R"("mesh": "part.stl")"), "mesh: is not an object");
-  expect_fault(obstacle(R"("mesh": {"file": "a.stl", "scale": 0})"), "scale: is 0");
-  expect_fault(obstacle(R"("points": {"file": "a.ply"})"), "'radius' is missing");
+  expect_fault(obstacle(R"("mesh": "part.stl")"), "\"mesh\" is not an object");
+  expect_fault(obstacle(R"("mesh": {"file": "a.stl", "scale": 0})"), "\"scale\" is 0");
+  expect_fault(obstacle(R"("points": {"file": "a.ply"})"), "\"radius\" is missing");
   expect_fault(obstacle(R"("points": {"file": "a.ply", "radius": 0})"), "is not above 0");
   expect_fault(obstacle(R"("half_space": {}, "pose": {"position": [0, 0, 1e400]})"), "1e400");
   expect_fault(obstacle(R"("half_space": {}, "pose": {"xyz": [0, 0, 1]})"), "the key 'xyz'");
@@ -182,22 +182,22 @@ TEST_F(SceneFileTest, RefusesFaultyObstacles) {
 
 TEST_F(SceneFileTest, RefusesFaultyRest) {
   expect_fault(scene(R"("attached": [{"name": "a", "tree": {"file": "c"}}])"),
-               "attached object 0 'a': 'link' is missing");
+               "attached object 0 'a': \"link\" is missing");
   expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "box": {"size": [1, 1, 1]}}])"),
                "the key 'box' is not known here");
   expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "tree": {"file": "c"},
                                       "max_error": 1}])"),
                "is for meshes");
   expect_fault(scene(R"("regions": [{"body": "a", "name": "tip", "ball": {"radius": 1}}])"),
-               "'center' is missing");
+               "\"center\" is missing");
   expect_fault(scene(R"("allowed_contacts": [{"body": "a", "region": "tip", "other": "b"}])"),
                "'a' has no region 'tip'");
-  expect_fault(scene(R"("allowed_contacts": [{"body": "a"}])"), "'other' is missing");
+  expect_fault(scene(R"("allowed_contacts": [{"body": "a"}])"), "\"other\" is missing");
   expect_fault(scene(R"("padding": [{"body": "a", "distance": -1}])"), "is below 0");
   expect_fault(scene(R"("padding": [{"body": "a", "other": "b", "distance": 1},
                                      {"body": "b", "other": "a", "distance": 0}])"),
                "the padding of 'b' is given twice");
-  expect_fault(scene(R"("robot": {"urdf": "a"})"), "robot: the key 'urdf'");
+  expect_fault(scene(R"("robot": {"urdf": "a"})"), "\"robot\": the key 'urdf'");
 }
 
 // A misspelt word must not place an obstacle elsewhere than it was meant.
@@ -225,25 +225,26 @@ TEST_F(SceneFileTest, RefusesUnknownKeysAtEveryPlace) {
 
 TEST_F(SceneFileTest, RefusesFaultyValues) {
   expect_fault(obstacle(R"("points": {"file": "a", "radius": 1, "voxel": -1})"),
-               "voxel: is below 0");
+               "\"voxel\" is below 0");
   expect_fault(obstacle(R"("points": {"file": "a", "radius": 1, "scale": 0})"),
-               "scale: is not above 0");
-  expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 0, 1]})"), "scale: is 0");
+               "\"scale\" is not above 0");
+  expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 0, 1]})"), "\"scale\" is 0");
   expect_fault(obstacle(R"("mesh": {"file": "a", "scale": [1, 1]})"), "is not a list of 3");
-  expect_fault(obstacle(R"("mesh": {"file": 1})"), "file: is not a text");
-  expect_fault(obstacle(R"("mesh": {"file": ""})"), "file: is empty");
+  expect_fault(obstacle(R"("mesh": {"file": 1})"), "\"file\" is not a text");
+  expect_fault(obstacle(R"("mesh": {"file": ""})"), "\"file\" is empty");
   expect_fault(obstacle(R"("box": {"size": [1, 2, 3, 4]})"), "is not a list of 3 numbers");
   expect_fault(obstacle(R"("half_space": {}, "pose": {"quaternion": [0, 0, 1]})"),
                "is not a list of 4 numbers");
   expect_fault(R"({"format": "spherule-scene", "version": 1.0})", "is not a whole number");
   const std::string region = R"({"body": "a", "name": "tip", "ball": {"center": [0, 0, 0], )";
-  expect_fault(scene(R"("regions": [)" + region + R"("radius": 0}}])"), "radius: is not above 0");
+  expect_fault(scene(R"("regions": [)" + region + R"("radius": 0}}])"),
+               "\"radius\" is not above 0");
   expect_fault(
       scene(R"("regions": [)" + region + R"("radius": 1}}, )" + region + R"("radius": 2}}])"),
       "the region 'tip' of 'a' is there twice");
   expect_fault(scene(R"("attached": [{"name": "a", "link": "b", "mesh": {"file": "c"},
                                       "max_error": 0}])"),
-               "max_error: is not above 0");
+               "\"max_error\" is not above 0");
 }
 
 using Eigen::Vector3d;

@@ -154,7 +154,7 @@ TEST_F(SphereFormatFaults, Json) {
   expect_refusal("[]", "has only 0 levels");
   expect_refusal("[1]", "is not an object");
   expect_refusal("[{\"spheres\": [{\"origin\": [0, 0], \"radius\": 1}]}]",
-                 "sphere 0: is not [x, y, z]");
+                 "sphere 0: \"origin\" is not [x, y, z]");
   expect_refusal("[{\"spheres\": [{\"origin\": [0, 0, 0]}]}]", "\"radius\" is missing");
   expect_refusal("[{\"spheres\": [{\"origin\": [0, 0, 1e17], \"radius\": 1}]}]", "beyond 1e15");
   expect_refusal("{\"centers\": [[0, 0, 0]], \"radii\": []}", "other counts");
