@@ -6,7 +6,6 @@
 #include "io/mesh_io.h"
 #include "robot/cover/audit_robot.h"
 #include "robot/cover/link_parts.h"
-#include "robot/cover/primitive_mesh.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/urdf.h"
 #include "tests/robot/cover/cover_oracle.h"
