@@ -8,7 +8,10 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <exception>
+#include <mutex>
 
 namespace spherule::internal {
 
@@ -30,6 +33,32 @@ std::size_t thread_count() {
   const auto allowed =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   return std::min(allowed, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+}
+
+void share_work(std::size_t pieces, std::size_t workers,
+                const std::function<void(std::size_t worker, std::size_t piece)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::atomic<bool> has_failed = false;
+  std::mutex mutex;
+  std::size_t first_failed = pieces;
+  std::exception_ptr failure;
+  // Pieces before one that threw were handed out earlier, and whoever has got one does it, so that
+  // in the end the first failure is known.
+  parallel_for(0, std::min(pieces, workers), [&](std::size_t worker) {
+    while (!has_failed) {
+      const std::size_t piece = next++;
+      if (piece >= pieces) return;
+      try {
+        work(worker, piece);
+      } catch (...) {
+        has_failed = true;
+        const std::lock_guard lock(mutex);
+        if (piece < first_failed) failure = std::current_exception();
+        first_failed = std::min(first_failed, piece);
+      }
+    }
+  });
+  if (failure) std::rethrow_exception(failure);
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh_io.h"
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rounding.h"
@@ -13,7 +14,6 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 namespace spherule {
@@ -40,16 +40,8 @@ void check_weld(double tolerance) {
   }
 }
 
-// Little-endian image of a number, appended.
-template <class T>
-void append(std::string& bytes, T value) {
-  char image[sizeof(T)];
-  std::memcpy(image, &value, sizeof(T));
-  bytes.append(image, sizeof(T));
-}
-
 void append(std::string& bytes, const Eigen::Vector3f& v) {
-  for (int k = 0; k < 3; ++k) append(bytes, v[k]);
+  for (int k = 0; k < 3; ++k) internal::append_number(bytes, v[k]);
 }
 
 }  // namespace
@@ -75,14 +67,14 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& path) {
   std::string bytes = "binary STL";  // must not begin with "solid", which marks text
   bytes.resize(80, ' ');
   bytes.reserve(84 + 50 * mesh.triangles.size());
-  append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  internal::append_number(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto [a, b, c] = corners_of(mesh, t);
     append(bytes, Eigen::Vector3f((b - a).cross(c - a).stableNormalized().cast<float>()));
     for (const Eigen::Vector3d* corner : {&a, &b, &c}) {
       append(bytes, Eigen::Vector3f(corner->cast<float>()));
     }
-    append(bytes, std::uint16_t{0});
+    internal::append_number(bytes, std::uint16_t{0});
   }
   write_file_atomically(path, bytes);
 }

@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace spherule::internal {
 namespace {
@@ -61,9 +59,9 @@ void PlyData::read_header() {
 void PlyData::read_format() {
   const std::string_view format = in_.token_on_line();
   if (format == "binary_little_endian") {
-    encoding_ = Encoding::kLittleEndian;
+    byte_order_ = std::endian::little;
   } else if (format == "binary_big_endian") {
-    encoding_ = Encoding::kBigEndian;
+    byte_order_ = std::endian::big;
   } else if (format != "ascii") {
     in_.fail(in_quotes(format) + " is not a PLY format");
   }
@@ -93,7 +91,7 @@ void PlyData::read_property() {
   std::string_view type = in_.token_on_line();
   if (type == "list") {
     property.count_type = read_type(in_.token_on_line());
-    if (*property.count_type >= PlyNumber::kFloat) in_.fail("a list of fractional length");
+    if (*property.count_type >= NumberType::kFloat) in_.fail("a list of fractional length");
     type = in_.token_on_line();
   }
   property.type = read_type(type);
@@ -108,7 +106,7 @@ void PlyData::read_property() {
   properties.push_back(std::move(property));
 }
 
-PlyNumber PlyData::read_type(std::string_view word) const {
+NumberType PlyData::read_type(std::string_view word) const {
   constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"char", "int8"},
                                                                       {"uchar", "uint8"},
                                                                       {"short", "int16"},
@@ -118,7 +116,7 @@ PlyNumber PlyData::read_type(std::string_view word) const {
                                                                       {"float", "float32"},
                                                                       {"double", "float64"}}};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (word == kNames[i][0] || word == kNames[i][1]) return static_cast<PlyNumber>(i);
+    if (word == kNames[i][0] || word == kNames[i][1]) return static_cast<NumberType>(i);
   }
   in_.fail(in_quotes(word) + " is not a type of number");
 }
@@ -144,41 +142,15 @@ double PlyData::next_in_text() {
   return in_.number(token);
 }
 
-template <class T>
-double PlyData::next_in_binary() {
-  std::array<char, sizeof(T)> image;
-  if (bytes_.size() - at_ < image.size()) fail("the file is cut short in " + item());
-  std::memcpy(image.data(), bytes_.data() + at_, image.size());
-  at_ += image.size();
-  const bool big = encoding_ == Encoding::kBigEndian;
-  if (big != (std::endian::native == std::endian::big)) std::reverse(image.begin(), image.end());
-  return static_cast<double>(std::bit_cast<T>(image));
-}
-
-double PlyData::next(PlyNumber type) {
+double PlyData::next(NumberType type) {
   if (is_text()) return next_in_text();
-  switch (type) {
-    case PlyNumber::kInt8:
-      return next_in_binary<std::int8_t>();
-    case PlyNumber::kUint8:
-      return next_in_binary<std::uint8_t>();
-    case PlyNumber::kInt16:
-      return next_in_binary<std::int16_t>();
-    case PlyNumber::kUint16:
-      return next_in_binary<std::uint16_t>();
-    case PlyNumber::kInt32:
-      return next_in_binary<std::int32_t>();
-    case PlyNumber::kUint32:
-      return next_in_binary<std::uint32_t>();
-    case PlyNumber::kFloat:
-      return next_in_binary<float>();
-    case PlyNumber::kDouble:
-      break;
-  }
-  return next_in_binary<double>();
+  const std::size_t begin = at_;
+  if (bytes_.size() - begin < size_of(type)) fail("the file is cut short in " + item());
+  at_ += size_of(type);
+  return number_at(bytes_.data() + begin, type, *byte_order_);
 }
 
-std::int64_t PlyData::next_integer(PlyNumber type) {
+std::int64_t PlyData::next_integer(NumberType type) {
   const double value = next(type);
   if (!(std::abs(value) <= 0x1p32) || value != std::floor(value)) fail("a whole number expected");
   return static_cast<std::int64_t>(value);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "base/text_scanner.h"
+#include "io/binary_number.h"
 
 #include <Eigen/Core>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,12 +16,10 @@
 
 namespace spherule::internal {
 
-enum class PlyNumber { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
 struct PlyProperty {
   std::string name;
-  PlyNumber type = PlyNumber::kFloat;   // of the items of a list
-  std::optional<PlyNumber> count_type;  // of the length of a list; only lists have it
+  NumberType type = NumberType::kFloat;  // of the items of a list
+  std::optional<NumberType> count_type;  // of the length of a list; only lists have it
 };
 
 struct PlyElement {
@@ -37,7 +37,7 @@ class PlyData {
   PlyData(std::string_view bytes, const std::string& subject);
 
   const std::vector<PlyElement>& elements() const { return elements_; }
-  bool is_text() const { return encoding_ == Encoding::kText; }
+  bool is_text() const { return !byte_order_; }
   const std::string& subject() const { return in_.subject(); }
 
   // Calls `read` once for each item of the element, which has to read all of its properties.
@@ -51,8 +51,8 @@ class PlyData {
   }
 
   // The next number of the item; finite if the file is text.
-  double next(PlyNumber type);
-  std::int64_t next_integer(PlyNumber type);
+  double next(NumberType type);
+  std::int64_t next_integer(NumberType type);
   // The list that comes next, or its length alone.
   void next_list(const PlyProperty& property, std::vector<std::int64_t>& list);
   std::size_t next_list_size(const PlyProperty& property);
@@ -66,24 +66,20 @@ class PlyData {
   [[noreturn]] void fail(const std::string& reason) const;
 
  private:
-  enum class Encoding { kText, kLittleEndian, kBigEndian };
-
   void read_header();
   void read_format();
   void read_element();
   void read_property();
-  PlyNumber read_type(std::string_view word) const;
+  NumberType read_type(std::string_view word) const;
 
   void begin_item(const PlyElement& element, std::size_t number);
   void end_item();
   double next_in_text();
-  template <class T>
-  double next_in_binary();
   std::string item() const;  // the name of the current one
 
   std::string_view bytes_;
-  TextScanner in_;  // of the header, and of all in text form
-  Encoding encoding_ = Encoding::kText;
+  TextScanner in_;                         // of the header, and of all in text form
+  std::optional<std::endian> byte_order_;  // in binary form
   std::vector<PlyElement> elements_;
   std::size_t at_ = 0;  // in binary form: the next byte
   const PlyElement* element_ = nullptr;

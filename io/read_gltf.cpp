@@ -1,29 +1,477 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/bytes.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/json.h"
 #include "base/rounding.h"
+#include "base/text.h"
 #include "geometry/vertex_rounding.h"
-#include "io/gltf_data.h"
+#include "io/binary_number.h"
 #include "io/mesh_readers.h"
 #include "io/placement.h"
 #include "io/polygon_triangles.h"
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <list>
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
+
+// glTF and GLB files (Khronos, "glTF 2.0 Specification").
 
 namespace spherule::internal {
 namespace {
 
 using Eigen::Vector3d;
-using Json = GltfDocument::Json;
+using Json = nlohmann::json;
+
+constexpr std::size_t kHeader = 12;      // of a GLB file: magic, version, length
+constexpr std::size_t kChunkHeader = 8;  // length and type
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+
+// Elements of one accessor: more than any mesh that is read has corners.
+constexpr std::uint64_t kMaxCount = std::uint64_t{1} << 27;
+// Numbers of a sparse accessor that are zero because no buffer holds them.
+constexpr std::size_t kMaxZeros = std::size_t{1} << 24;
+// What it costs to find an accessor, in numbers read.
+constexpr std::size_t kLookup = 32;
+
+// What an accessor is read for, which decides on the type of its elements and of their components.
+enum class GltfUse {
+  kPositions,           // VEC3 of floats
+  kQuantizedPositions,  // VEC3, of whole numbers too
+  kIndices,             // SCALAR of whole numbers without a sign
+};
+
+// A component of an accessor; normalised numbers stand for [0, 1] or [-1, 1].
+double component_at(const char* bytes, NumberType type, bool is_normalized) {
+  constexpr std::array<double, 6> kLargest = {0x7F, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0xFFFFFFFF};
+  const double value = number_at(bytes, type, std::endian::little);
+  if (!is_normalized) return value;
+  return std::max(value / kLargest[static_cast<std::size_t>(type)], -1.0);
+}
+
+bool is_index(NumberType type) {
+  return type == NumberType::kUint8 || type == NumberType::kUint16 || type == NumberType::kUint32;
+}
+
+bool is_allowed(GltfUse use, NumberType type, bool is_normalized) {
+  if (use == GltfUse::kIndices) return !is_normalized && is_index(type);
+  if (type == NumberType::kFloat) return !is_normalized;
+  return use == GltfUse::kQuantizedPositions && !(is_normalized && type == NumberType::kUint32);
+}
+
+// References of one file to others (RFC 3986, RFC 2397).
+
+int digit_of_base64(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+std::optional<std::string> from_base64(std::string_view text) {
+  std::size_t padding = 0;
+  while (padding < 2 && text.ends_with('=')) {
+    text.remove_suffix(1);
+    ++padding;
+  }
+  if (text.size() % 4 == 1 || (padding > 0 && (text.size() + padding) % 4 != 0)) {
+    return std::nullopt;
+  }
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const int digit = digit_of_base64(c);
+    if (digit < 0) return std::nullopt;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<char>(bits >> count & 0xFF));
+    }
+  }
+  return bytes;
+}
+
+// The bytes of a data URI with base64 (RFC 4648); nothing if it is none.
+std::optional<std::string> bytes_of_data_uri(std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (!uri.starts_with("data:") || comma == std::string_view::npos) return std::nullopt;
+  if (!uri.substr(0, comma).ends_with(";base64")) return std::nullopt;
+  return from_base64(uri.substr(comma + 1));
+}
+
+// The file that a relative reference names, with percent-encoding undone; nothing if it has a
+// scheme, is absolute, is not a regular file, or lies, links followed, outside of `folder`.
+std::optional<std::filesystem::path> file_below(const std::filesystem::path& folder,
+                                                std::string_view reference) {
+  // A colon before any slash ends a scheme.
+  const std::size_t colon = reference.find(':');
+  if (colon != std::string_view::npos && colon < reference.find('/')) return std::nullopt;
+  const PercentDecoded name = percent_decoded(reference);
+  if (name.has_other_percents || name.text.empty() || name.text.find('\0') != std::string::npos) {
+    return std::nullopt;
+  }
+  const std::filesystem::path relative(name.text);
+  if (relative.is_absolute()) return std::nullopt;
+  std::error_code error;
+  const std::filesystem::path root =
+      std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
+  if (error) return std::nullopt;
+  const std::filesystem::path file = std::filesystem::weakly_canonical(root / relative, error);
+  if (error || !std::filesystem::is_regular_file(file, error) || error) return std::nullopt;
+  const std::filesystem::path inside = file.lexically_relative(root);
+  if (inside.empty() || *inside.begin() == "..") return std::nullopt;
+  return file;
+}
+
+// The JSON of a glTF or GLB file, with checked access.
+class GltfDocument {
+ public:
+  // `subject` names the file in an Error; it and `bytes` have to outlive the document. Throws Error
+  // if the file is not glTF 2, names a member of an object twice, is nested deeper than
+  // kDeepestJson or requires an extension that may change where its meshes are.
+  GltfDocument(std::string_view bytes, const std::string& subject) : subject_(subject) {
+    split_container(bytes);
+    root_ = parse_json<Json>(json_, [&](const std::string& reason) {
+      fail((json_.size() < bytes.size() ? "in its JSON: " : "") + reason);
+    });
+    if (!root().is_object()) fail("not a glTF file");
+    const Json* const asset = member(root(), "asset");
+    if (asset == nullptr || !text(*asset, "version").starts_with("2."))
+      fail("not glTF of version 2");
+    // Later versions 2.x can be read as 2.0 unless the file says otherwise.
+    if (asset->contains("minVersion") && text(*asset, "minVersion") != "2.0") {
+      fail("it requires version " + in_quotes(text(*asset, "minVersion")) +
+           " of glTF, and 2.0 is supported");
+    }
+    check_extensions();
+  }
+
+  const Json& root() const { return root_; }
+  // The binary chunk of a GLB file.
+  std::optional<std::string_view> binary_chunk() const { return binary_chunk_; }
+  // Whether the file requires KHR_mesh_quantization: positions may be whole numbers.
+  bool is_quantized() const { return is_quantized_; }
+
+  // Of an object: a whole number that is not negative, `absent` if there is none.
+  std::uint64_t whole(const Json& object, const char* key, std::uint64_t absent) const {
+    return index(object, key).value_or(absent);
+  }
+  std::optional<std::uint64_t> index(const Json& object, const char* key) const {
+    const Json* const found = value(object, key, &Json::is_number_unsigned, "a whole number");
+    return found == nullptr ? std::nullopt : std::optional(found->get<std::uint64_t>());
+  }
+  // Indices or finite numbers; empty if there is no such list.
+  std::vector<std::uint64_t> indices(const Json& object, const char* key) const {
+    return values<std::uint64_t>(object, key, &Json::is_number_unsigned, "a list of indices");
+  }
+  std::vector<double> numbers(const Json& object, const char* key) const {
+    constexpr const char* kWhat = "a list of finite numbers";
+    std::vector<double> result = values<double>(object, key, &Json::is_number, kWhat);
+    for (const double number : result) {
+      if (!std::isfinite(number)) refuse(key, kWhat);
+    }
+    return result;
+  }
+  // A string, empty if there is none.
+  std::string text(const Json& object, const char* key) const {
+    const Json* const found = value(object, key, &Json::is_string, "a text");
+    return found == nullptr ? std::string() : found->get<std::string>();
+  }
+  // The list of objects, empty if there is none.
+  const Json& list(const Json& object, const char* key) const {
+    static const Json kNone = Json::array();
+    const Json* const found = value(object, key, &Json::is_array, "a list");
+    if (found == nullptr) return kNone;
+    for (const Json& entry : *found) {
+      if (!entry.is_object()) refuse(key, "a list of objects");
+    }
+    return *found;
+  }
+  // The object that a reference names.
+  const Json& item(const char* list, std::uint64_t index) const {
+    const auto it = root().find(list);
+    if (it == root().end() || !it->is_array() || index >= it->size() ||
+        !(*it)[static_cast<std::size_t>(index)].is_object()) {
+      fail(std::string("it refers to an entry of '") + list + "' that is not there");
+    }
+    return (*it)[static_cast<std::size_t>(index)];
+  }
+  // The member that is an object, or null.
+  const Json* member(const Json& object, const char* key) const {
+    return value(object, key, &Json::is_object, "an object");
+  }
+
+  [[noreturn]] void fail(const std::string& reason) const { throw Error(subject_, reason); }
+
+ private:
+  using IsType = bool (Json::*)() const noexcept;
+
+  [[noreturn]] void refuse(const char* key, const char* what) const {
+    fail(std::string("'") + key + "' is not " + what);
+  }
+
+  // The value of a key, of that type; null if there is none.
+  const Json* value(const Json& object, const char* key, IsType is, const char* what) const {
+    const auto it = object.find(key);
+    if (it == object.end()) return nullptr;
+    if (!((*it).*is)()) refuse(key, what);
+    return &*it;
+  }
+
+  template <class Value>
+  std::vector<Value> values(const Json& object, const char* key, IsType is,
+                            const char* what) const {
+    std::vector<Value> result;
+    const Json* const found = value(object, key, &Json::is_array, what);
+    if (found == nullptr) return result;
+    for (const Json& entry : *found) {
+      if (!(entry.*is)()) refuse(key, what);
+      result.push_back(entry.get<Value>());
+    }
+    return result;
+  }
+
+  void split_container(std::string_view bytes) {
+    json_ = bytes;
+    if (!bytes.starts_with("glTF")) return;
+    if (bytes.size() < kHeader + kChunkHeader) fail("the file is cut short");
+    if (number_at<std::uint32_t>(bytes.data() + 4) != 2) fail("not glTF of version 2");
+    if (number_at<std::uint32_t>(bytes.data() + 8) != bytes.size())
+      fail("the file is cut short, or longer than it says");
+    bool has_json = false;
+    for (std::size_t at = kHeader; at < bytes.size();) {
+      if (bytes.size() - at < kChunkHeader) fail("the file is cut short");
+      const std::size_t size = number_at<std::uint32_t>(bytes.data() + at);
+      const std::uint32_t type = number_at<std::uint32_t>(bytes.data() + at + 4);
+      at += kChunkHeader;
+      if (size > bytes.size() - at) fail("the file is cut short");
+      if (!has_json && type != kJsonChunk) fail("its first chunk is not JSON");
+      if (!has_json) {
+        json_ = bytes.substr(at, size);
+        has_json = true;
+      } else if (type == kBinaryChunk && !binary_chunk_) {
+        binary_chunk_ = bytes.substr(at, size);
+      }
+      at += size;
+    }
+  }
+
+  // Extensions that change the appearance are no matter; any other that a reader must know may
+  // change where things are.
+  void check_extensions() {
+    const auto required = root().find("extensionsRequired");
+    if (required == root().end()) return;
+    if (!required->is_array()) fail("'extensionsRequired' is not a list");
+    for (const Json& entry : *required) {
+      const std::string name = entry.is_string() ? entry.get<std::string>() : "?";
+      const bool appearance_only =
+          name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+          name.starts_with("KHR_lights_") || name.starts_with("EXT_texture_");
+      if (name == "KHR_mesh_quantization") {
+        is_quantized_ = true;
+      } else if (!appearance_only) {
+        fail("it requires the extension " + name + ", which is not supported");
+      }
+    }
+  }
+
+  const std::string& subject_;
+  std::string_view json_;
+  std::optional<std::string_view> binary_chunk_;
+  Json root_;
+  bool is_quantized_ = false;
+};
+
+// Values of an accessor, element by element.
+struct GltfValues {
+  std::vector<double> numbers;
+  std::size_t components = 1;  // of an element
+  bool is_exact = true;        // false for normalised whole numbers, of which each is rounded
+
+  std::size_t count() const { return numbers.size() / components; }
+};
+
+// Reads buffers and the accessors on them. Every offset, stride and count is checked against the
+// bytes that are there. Buffers come from the binary chunk of a GLB file, from data URIs, and from
+// files in the folder of the glTF file or below it; others are refused.
+class GltfAccessors {
+ public:
+  // All have to outlive the object.
+  GltfAccessors(const GltfDocument& document, const std::filesystem::path& file,
+                SceneBudget& budget)
+      : document_(document), file_(file), budget_(budget) {}
+
+  GltfValues read(std::uint64_t index, GltfUse use) {
+    const Json& accessor = document_.item("accessors", index);
+    const std::optional<NumberType> type = component_type_of(accessor);
+    const auto normalized = accessor.find("normalized");
+    const bool is_normalized = normalized != accessor.end() && *normalized == true;
+    const bool is_scalar = use == GltfUse::kIndices;
+    if (document_.text(accessor, "type") != (is_scalar ? "SCALAR" : "VEC3") || !type ||
+        !is_allowed(use, *type, is_normalized)) {
+      document_.fail("the accessor " + std::to_string(index) +
+                     " is not of the type that is needed");
+    }
+    const std::size_t size = size_of(*type);
+    const std::uint64_t stated = document_.whole(accessor, "count", 0);
+    if (stated == 0 || stated > kMaxCount) document_.fail("an accessor of no usable count");
+    const auto count = static_cast<std::size_t>(stated);
+    GltfValues result{.numbers = {}, .components = is_scalar ? std::size_t{1} : 3};
+    result.is_exact = !is_normalized;
+    if (accessor.contains("bufferView")) {
+      const Layout layout = this->layout(accessor, size * result.components, count, true);
+      budget_.take_steps(kLookup + count * result.components);
+      result.numbers.reserve(count * result.components);
+      for (std::size_t i = 0; i < count; ++i) {
+        const char* element = layout.bytes.data() + i * layout.stride;
+        for (std::size_t k = 0; k < result.components; ++k) {
+          result.numbers.push_back(component_at(element + k * size, *type, is_normalized));
+        }
+      }
+    } else {
+      if (!accessor.contains("sparse")) document_.fail("an accessor without data");
+      if (count * result.components > kMaxZeros) {
+        document_.fail("a sparse accessor of more than 2^24 numbers without a buffer view");
+      }
+      budget_.take_steps(kLookup + count * result.components);
+      result.numbers.assign(count * result.components, 0.0);
+    }
+    if (const Json* sparse = document_.member(accessor, "sparse")) {
+      add_sparse(*sparse, *type, count, is_normalized, result);
+    }
+    return result;
+  }
+
+ private:
+  // Where consecutive elements are.
+  struct Layout {
+    std::string_view bytes;
+    std::size_t stride = 0;
+  };
+
+  // By its number in the specification.
+  std::optional<NumberType> component_type_of(const Json& accessor) const {
+    constexpr std::uint64_t kFirst = 5120;
+    const std::uint64_t number = document_.whole(accessor, "componentType", 0) - kFirst;
+    if (number > 6 || number == 4) return std::nullopt;
+    return static_cast<NumberType>(number);
+  }
+
+  // Replaces some of the elements.
+  void add_sparse(const Json& sparse, NumberType type, std::size_t count, bool is_normalized,
+                  GltfValues& values) {
+    const std::uint64_t stated = document_.whole(sparse, "count", 0);
+    const Json* const indices = document_.member(sparse, "indices");
+    const Json* const replaced = document_.member(sparse, "values");
+    if (stated == 0 || stated > count || indices == nullptr || replaced == nullptr) {
+      document_.fail("a sparse accessor that is incomplete");
+    }
+    const auto changes = static_cast<std::size_t>(stated);
+    const std::optional<NumberType> index_type = component_type_of(*indices);
+    if (!index_type || !is_index(*index_type)) {
+      document_.fail("the indices of a sparse accessor are not whole numbers");
+    }
+    const std::size_t size = size_of(type);
+    const Layout at = layout(*indices, size_of(*index_type), changes, false);
+    const Layout with = layout(*replaced, size * values.components, changes, false);
+    for (std::size_t i = 0; i < changes; ++i) {
+      const auto element = static_cast<std::size_t>(
+          component_at(at.bytes.data() + i * at.stride, *index_type, false));
+      if (element >= count) document_.fail("an index of a sparse accessor is out of range");
+      for (std::size_t k = 0; k < values.components; ++k) {
+        values.numbers[element * values.components + k] =
+            component_at(with.bytes.data() + i * with.stride + k * size, type, is_normalized);
+      }
+    }
+  }
+
+  Layout layout(const Json& place, std::size_t size, std::size_t count, bool may_stride) {
+    const std::optional<std::uint64_t> index = document_.index(place, "bufferView");
+    if (!index) document_.fail("an accessor without a buffer view");
+    const Json& view = document_.item("bufferViews", *index);
+    const std::string_view bytes = buffer(document_.whole(view, "buffer", ~std::uint64_t{0}));
+    const std::uint64_t view_begin = document_.whole(view, "byteOffset", 0);
+    const std::uint64_t view_size = document_.whole(view, "byteLength", 0);
+    if (view_begin > bytes.size() || view_size > bytes.size() - view_begin) {
+      document_.fail("a buffer view reaches beyond its buffer");
+    }
+    const std::uint64_t stride = may_stride ? document_.whole(view, "byteStride", size) : size;
+    if (stride < size || stride > 252) {
+      document_.fail("a stride that is shorter than an element or beyond 252 bytes");
+    }
+    // `count` and `stride` are small enough that nothing overflows.
+    const std::uint64_t begin = document_.whole(place, "byteOffset", 0);
+    const std::uint64_t needed = (count - 1) * stride + size;
+    if (begin > view_size || needed > view_size - begin) {
+      document_.fail("an accessor reaches beyond its buffer view");
+    }
+    return {bytes.substr(static_cast<std::size_t>(view_begin + begin),
+                         static_cast<std::size_t>(needed)),
+            static_cast<std::size_t>(stride)};
+  }
+
+  std::string_view buffer(std::uint64_t index) {
+    const Json& entry = document_.item("buffers", index);
+    const std::uint64_t size = document_.whole(entry, "byteLength", 0);
+    std::string_view bytes;
+    if (entry.contains("uri")) {
+      const auto [it, is_new] = buffers_.try_emplace(index);
+      if (is_new) it->second = load(document_.text(entry, "uri"));
+      bytes = it->second;
+    } else if (index == 0 && document_.binary_chunk()) {
+      bytes = *document_.binary_chunk();
+    } else {
+      document_.fail("a buffer without bytes");
+    }
+    if (size > bytes.size()) document_.fail("a buffer is shorter than it says");
+    return bytes.substr(0, static_cast<std::size_t>(size));
+  }
+
+  // The bytes of a URI, which stay with the object; a file is read once.
+  std::string_view load(const std::string& uri) {
+    if (uri.starts_with("data:")) {
+      std::optional<std::string> bytes = bytes_of_data_uri(uri);
+      if (!bytes) document_.fail("a data URI that is not base64");
+      return decoded_.emplace_back(*std::move(bytes));
+    }
+    const auto [it, is_new] = files_.try_emplace(uri);
+    if (is_new) {
+      const std::optional<std::filesystem::path> file = file_below(file_.parent_path(), uri);
+      if (!file) {
+        document_.fail("the buffer " + uri.substr(0, 60) + " is not a file in its folder or below");
+      }
+      it->second = read_regular_file(*file);
+    }
+    return it->second;
+  }
+
+  const GltfDocument& document_;
+  const std::filesystem::path& file_;
+  SceneBudget& budget_;
+  std::map<std::uint64_t, std::string_view> buffers_;  // by number
+  std::map<std::string, std::string> files_;           // by URI
+  std::list<std::string> decoded_;                     // of data URIs
+};
 
 constexpr std::uint64_t kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
 constexpr std::size_t kNone = ~std::size_t{0};

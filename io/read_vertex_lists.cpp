@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "base/bytes.h"
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/text.h"
@@ -10,11 +11,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <string>
@@ -121,12 +120,8 @@ constexpr std::size_t kHeaderBytes = 80;
 constexpr std::size_t kDataStart = kHeaderBytes + 4;
 constexpr std::size_t kFacetBytes = 50;  // normal, three corners, two bytes of attributes
 
-static_assert(std::endian::native == std::endian::little, "binary files are read as they stand");
-
 std::uint32_t facet_count(std::string_view bytes) {
-  std::uint32_t count = 0;
-  std::memcpy(&count, bytes.data() + kHeaderBytes, sizeof count);
-  return count;
+  return number_at<std::uint32_t>(bytes.data() + kHeaderBytes);
 }
 
 // The size decides, because the header of a binary file may begin with "solid" as well.
@@ -144,10 +139,10 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& subject) {
   mesh.vertices.reserve(3 * count);
   mesh.triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    float numbers[12];  // the normal first
-    std::memcpy(numbers, bytes.data() + kDataStart + i * kFacetBytes, sizeof numbers);
-    for (int k = 3; k < 12; k += 3) {
-      mesh.vertices.emplace_back(numbers[k], numbers[k + 1], numbers[k + 2]);
+    const char* const facet = bytes.data() + kDataStart + i * kFacetBytes;
+    const auto number = [&](std::size_t k) { return number_at<float>(facet + 4 * k); };
+    for (std::size_t k = 3; k < 12; k += 3) {  // the normal first
+      mesh.vertices.emplace_back(number(k), number(k + 1), number(k + 2));
     }
     const int first = static_cast<int>(3 * i);
     mesh.triangles.emplace_back(first, first + 1, first + 2);

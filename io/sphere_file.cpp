@@ -10,9 +10,11 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -45,11 +47,24 @@ class Refusal {
   std::string file_;
 };
 
-void check_depth(const CertificateRecord& record, const Refusal& refuse) {
-  refuse.unless(record.uncovered_depth_lower >= 0.0 &&
-                    record.uncovered_depth_lower <= record.uncovered_depth_upper,
-                "certificate: \"uncovered_depth\" is not a lower and an upper bound");
+constexpr const char* kNoDepth = "\"uncovered_depth\" is not a lower and an upper bound";
+
+bool is_depth(const CertificateRecord& record) {
+  return record.uncovered_depth_lower >= 0.0 &&
+         record.uncovered_depth_lower <= record.uncovered_depth_upper;
 }
+
+constexpr const char* kProtrusionKey = "protrusion_over_simplified_max";
+
+// Numbers of a certificate that may be absent, in the order in which they are written: two, then,
+// after the zones and the number of spheres, the others.
+constexpr std::pair<const char*, std::optional<double> CertificateRecord::*> kOptionalNumbers[] = {
+    {kProtrusionKey, &CertificateRecord::protrusion_over_simplified_max},
+    {"protrusion_over_mesh_max", &CertificateRecord::protrusion_over_mesh_max},
+    {"volume_ratio", &CertificateRecord::volume_ratio},
+    {"filled_volume", &CertificateRecord::filled_volume},
+    {"filled_volume_error", &CertificateRecord::filled_volume_error},
+    {"closing_slack", &CertificateRecord::closing_slack}};
 
 // --- writing ---
 
@@ -60,7 +75,7 @@ ordered_json number(double value, const std::string& what, const Refusal& refuse
 }
 
 ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
-  check_depth(record, refuse);
+  refuse.unless(is_depth(record), std::string("certificate: ") + kNoDepth);
   const auto put = [&refuse](double value, const std::string& key) {
     return number(value, "certificate: " + key, refuse);
   };
@@ -68,20 +83,19 @@ ordered_json written(const CertificateRecord& record, const Refusal& refuse) {
   certificate["covered"] = record.covered;
   certificate["uncovered_depth"] = {put(record.uncovered_depth_lower, "uncovered_depth"),
                                     put(record.uncovered_depth_upper, "uncovered_depth")};
-  const auto put_optional = [&](const char* key, const std::optional<double>& value) {
-    if (value) certificate[key] = put(*value, key);
+  const auto put_optional = [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto& [key, member] = kOptionalNumbers[i];
+      if (record.*member) certificate[key] = put(*(record.*member), key);
+    }
   };
-  put_optional("protrusion_over_simplified_max", record.protrusion_over_simplified_max);
-  put_optional("protrusion_over_mesh_max", record.protrusion_over_mesh_max);
+  put_optional(0, 2);
   if (!record.protrusion_in_zones.empty()) certificate["zones"] = ordered_json::array();
   for (const double protrusion : record.protrusion_in_zones) {
-    certificate["zones"].push_back({{"protrusion_over_simplified_max", put(protrusion, "zones")}});
+    certificate["zones"].push_back({{kProtrusionKey, put(protrusion, "zones")}});
   }
   certificate["sphere_count"] = record.sphere_count;
-  put_optional("volume_ratio", record.volume_ratio);
-  put_optional("filled_volume", record.filled_volume);
-  put_optional("filled_volume_error", record.filled_volume_error);
-  put_optional("closing_slack", record.closing_slack);
+  put_optional(2, std::size(kOptionalNumbers));
   return certificate;
 }
 
@@ -121,164 +135,137 @@ ordered_json written(const BodyRecord& body, const Refusal& refuse) {
 
 // --- reading ---
 
+using Value = internal::JsonValue<json>;
+
 // Absent where it is false.
-bool read_interrupted(const json& object, const std::string& where, const Refusal& refuse) {
+bool read_interrupted(const Value& object) {
   const auto found = object.find("interrupted");
-  if (found == object.end()) return false;
-  refuse.unless(found->is_boolean(), where + "\"interrupted\" is not true or false");
-  return found->get<bool>();
+  return found && found->truth();
 }
 
-const json& member(const json& object, const char* key, const std::string& where,
-                   const Refusal& refuse) {
-  const auto found = object.find(key);
-  if (found == object.end()) refuse(where + ": \"" + key + "\" is missing");
-  return *found;
+double read_number(const Value& value) {
+  const json& plain = value.json();
+  if (plain == kInfinityText) return kInfinity;
+  return plain == kMinusInfinityText ? -kInfinity : value.number();
 }
 
-double read_number(const json& value, const std::string& what, const Refusal& refuse) {
-  if (value.is_string() && is_infinity_text(value.get_ref<const std::string&>())) {
-    return value.get_ref<const std::string&>() == kInfinityText ? kInfinity : -kInfinity;
-  }
-  refuse.unless(value.is_number(), what + " is not a number");
-  return value.get<double>();
+template <std::size_t kCount>
+std::array<double, kCount> read_numbers(const Value& list, const char* what) {
+  list.expect(list.json().is_array() && list.json().size() == kCount, what);
+  std::array<double, kCount> numbers{};
+  for (std::size_t i = 0; i < kCount; ++i) numbers[i] = read_number(list.part(list.json()[i]));
+  return numbers;
 }
 
-Sphere read_sphere(const json& value, std::size_t index, const Refusal& refuse) {
-  const std::string where = "sphere " + std::to_string(index);
-  refuse.unless(value.is_object(), where + " is not an object");
-  const json& center = member(value, "center", where, refuse);
-  refuse.unless(center.is_array() && center.size() == 3, where + ": \"center\" is not [x,y,z]");
+std::size_t read_count(const Value& value) {
+  value.expect(value.json().is_number_unsigned(), "is not a number");
+  return value.json().get<std::size_t>();
+}
+
+Sphere read_sphere(const Value& value) {
   Sphere sphere;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    sphere.center[static_cast<Eigen::Index>(axis)] =
-        read_number(center[axis], where + ": a coordinate", refuse);
-  }
-  sphere.radius =
-      read_number(member(value, "radius", where, refuse), where + ": \"radius\"", refuse);
-  refuse.unless(sphere.radius >= 0.0, where + ": \"radius\" is negative");
-  refuse.unless(is_usable(sphere), where + ": a number is beyond 1e15");
+  sphere.center = Eigen::Vector3d(read_numbers<3>(value.at("center"), "is not [x,y,z]").data());
+  const Value radius = value.at("radius");
+  sphere.radius = read_number(radius);
+  radius.expect(sphere.radius >= 0.0, "is negative");
+  value.unless(is_usable(sphere), "a number is beyond 1e15");
   return sphere;
 }
 
-CertificateRecord read_certificate(const json& value, std::size_t sphere_count,
-                                   const Refusal& refuse) {
-  const std::string where = "certificate";
-  refuse.unless(value.is_object(), where + " is not an object");
+CertificateRecord read_certificate(const Value& value, std::size_t sphere_count) {
   CertificateRecord record;
-  const json& covered = member(value, "covered", where, refuse);
-  refuse.unless(covered.is_boolean(), where + ": \"covered\" is not true or false");
-  record.covered = covered.get<bool>();
-  const json& depth = member(value, "uncovered_depth", where, refuse);
-  refuse.unless(depth.is_array() && depth.size() == 2,
-                where + ": \"uncovered_depth\" is not [lower,upper]");
-  record.uncovered_depth_lower = read_number(depth[0], where + ": \"uncovered_depth\"", refuse);
-  record.uncovered_depth_upper = read_number(depth[1], where + ": \"uncovered_depth\"", refuse);
-  check_depth(record, refuse);
-  const auto optional = [&](const char* key) -> std::optional<double> {
+  record.covered = value.at("covered").truth();
+  const auto [lower, upper] = read_numbers<2>(value.at("uncovered_depth"), "is not [lower,upper]");
+  record.uncovered_depth_lower = lower;
+  record.uncovered_depth_upper = upper;
+  value.unless(is_depth(record), kNoDepth);
+  for (const auto& [key, member] : kOptionalNumbers) {
     const auto found = value.find(key);
-    if (found == value.end() || found->is_null()) return std::nullopt;
-    return read_number(*found, where + ": \"" + key + "\"", refuse);
-  };
-  record.protrusion_over_simplified_max = optional("protrusion_over_simplified_max");
-  record.protrusion_over_mesh_max = optional("protrusion_over_mesh_max");
-  record.volume_ratio = optional("volume_ratio");
-  record.filled_volume = optional("filled_volume");
-  record.filled_volume_error = optional("filled_volume_error");
-  record.closing_slack = optional("closing_slack");
-  if (const auto zones = value.find("zones"); zones != value.end()) {
-    refuse.unless(zones->is_array(), where + ": \"zones\" is not a list");
-    for (const json& zone : *zones) {
-      refuse.unless(zone.is_object(), where + ": a zone is not an object");
-      record.protrusion_in_zones.push_back(
-          read_number(member(zone, "protrusion_over_simplified_max", where + ": zone", refuse),
-                      where + ": zone", refuse));
-    }
+    if (found && !found->json().is_null()) record.*member = read_number(*found);
   }
-  const json& count = member(value, "sphere_count", where, refuse);
-  refuse.unless(count.is_number_unsigned() && count.get<std::uint64_t>() == sphere_count,
-                where + ": \"sphere_count\" is not the number of spheres in the file");
+  if (const auto zones = value.find("zones")) {
+    zones->each(zones->place() + " ", [&](const Value& zone) {
+      record.protrusion_in_zones.push_back(read_number(zone.at(kProtrusionKey)));
+    });
+  }
+  const Value count = value.at("sphere_count");
+  count.expect(count.json().is_number_unsigned() && count.json() == sphere_count,
+               "is not the number of spheres in the file");
   record.sphere_count = sphere_count;
   return record;
 }
 
-OptionValue read_option(const std::string& name, const json& value, const Refusal& refuse) {
+std::optional<CertificateRecord> certificate_if_there(const Value& object,
+                                                      std::size_t sphere_count) {
+  const auto found = object.find("certificate");
+  if (!found || found->json().is_null()) return std::nullopt;
+  return read_certificate(*found, sphere_count);
+}
+
+OptionValue read_option(const std::string& name, const Value& object, const json& value) {
+  const auto refuse = [&](const char* reason) { object.refuse("option " + name + reason); };
   if (value.is_boolean()) return value.get<bool>();
   if (value.is_number_float()) return value.get<double>();
-  if (value.is_number_unsigned()) {
-    refuse.unless(value.get<std::uint64_t>() <=
-                      static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()),
-                  "option " + name + " is too large");
+  if (value.is_number_unsigned() && !std::in_range<std::int64_t>(value.get<std::uint64_t>())) {
+    refuse(" is too large");
   }
   if (value.is_number_integer()) return value.get<std::int64_t>();
-  refuse.unless(value.is_string(),
-                "option " + name + " is neither a number, a text nor a truth value");
+  if (!value.is_string()) refuse(" is neither a number, a text nor a truth value");
   const auto& text = value.get_ref<const std::string&>();
-  if (is_infinity_text(text)) return read_number(value, "option " + name, refuse);
+  if (is_infinity_text(text)) return read_number(object.part(value));
   return text;
 }
 
-std::map<std::string, OptionValue> read_options(const json& object, const std::string& where,
-                                                const Refusal& refuse) {
+std::map<std::string, OptionValue> read_options(const Value& object) {
   std::map<std::string, OptionValue> options;
   const auto found = object.find("options");
-  if (found == object.end() || found->is_null()) return options;
-  refuse.unless(found->is_object(), where + "\"options\" is not an object");
-  for (const auto& [key, option] : found->items()) options[key] = read_option(key, option, refuse);
+  if (!found || found->json().is_null()) return options;
+  found->expect(found->json().is_object(), "is not an object");
+  for (const auto& [key, option] : found->json().items()) {
+    options[key] = read_option(key, object, option);
+  }
   return options;
 }
 
-Pose read_pose(const json& value, const std::string& where, const Refusal& refuse) {
-  refuse.unless(value.is_array() && value.size() == 7, where + ": \"pose\" is not seven numbers");
-  std::array<double, 7> p{};
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] = read_number(value[i], where + ": pose", refuse);
+Pose read_pose(const Value& value) {
+  const auto p = read_numbers<7>(value, "is not seven numbers");
   try {
     return {Eigen::Quaterniond(p[6], p[3], p[4], p[5]), Eigen::Vector3d(p[0], p[1], p[2])};
   } catch (const Error& error) {
-    refuse(where + ": \"pose\" is not usable: " + error.what());
+    value.expect(false, std::string("is not usable: ") + error.what());
+    throw;
   }
 }
 
-BodyRecord read_body(const json& value, std::span<const BodyRecord> before, const Refusal& refuse) {
-  const std::string where = "body " + std::to_string(before.size());
-  refuse.unless(value.is_object(), where + " is not an object");
+BodyRecord read_body(const Value& value, std::span<const BodyRecord> before) {
   BodyRecord body;
-  const json& name = member(value, "name", where, refuse);
-  refuse.unless(name.is_string() && !name.get_ref<const std::string&>().empty(),
-                where + ": \"name\" is not a text");
-  body.name = name.get<std::string>();
-  const json& count = member(value, "sphere_count", where, refuse);
-  refuse.unless(count.is_number_unsigned(), where + ": \"sphere_count\" is not a number");
-  body.sphere_count = count.get<std::size_t>();
-  const auto certificate = value.find("certificate");
-  if (certificate != value.end() && !certificate->is_null()) {
-    body.certificate = read_certificate(*certificate, body.sphere_count, refuse);
-  }
-  body.options = read_options(value, where + ": ", refuse);
-  body.interrupted = read_interrupted(value, where + ": ", refuse);
-  if (const auto of = value.find("copy_of"); of != value.end()) {
-    refuse.unless(of->is_number_unsigned() && of->get<std::uint64_t>() < before.size() &&
-                      !before[of->get<std::size_t>()].copy,
-                  where + ": \"copy_of\" is not the number of a body before it that is no copy");
-    body.copy = BodyCopy{of->get<std::size_t>(),
-                         read_pose(member(value, "pose", where, refuse), where, refuse)};
-    refuse.unless(body.sphere_count == before[body.copy->of].sphere_count,
-                  where + ": has another number of spheres than the body that it is a copy of");
+  const Value name = value.at("name");
+  body.name = name.text();
+  name.expect(!body.name.empty(), "is not a text");
+  body.sphere_count = read_count(value.at("sphere_count"));
+  body.certificate = certificate_if_there(value, body.sphere_count);
+  body.options = read_options(value);
+  body.interrupted = read_interrupted(value);
+  if (const auto of = value.find("copy_of")) {
+    of->expect(of->json().is_number_unsigned() && of->json() < before.size() &&
+                   !before[of->json().get<std::size_t>()].copy,
+               "is not the number of a body before it that is no copy");
+    body.copy = BodyCopy{of->json().get<std::size_t>(), read_pose(value.at("pose"))};
+    value.unless(body.sphere_count == before[body.copy->of].sphere_count,
+                 "has another number of spheres than the body that it is a copy of");
   }
   return body;
 }
 
-std::vector<BodyRecord> read_bodies(const json& list, std::size_t sphere_count,
-                                    const Refusal& refuse) {
-  refuse.unless(list.is_array(), "\"bodies\" is not a list");
+std::vector<BodyRecord> read_bodies(const Value& list, std::size_t sphere_count) {
   std::vector<BodyRecord> bodies;
   std::size_t left = sphere_count;
-  for (const json& value : list) {
-    bodies.push_back(read_body(value, bodies, refuse));
-    refuse.unless(bodies.back().sphere_count <= left, "its bodies have more spheres than it holds");
+  list.each("body ", [&](const Value& value) {
+    bodies.push_back(read_body(value, bodies));
+    list.unless(bodies.back().sphere_count <= left, "its bodies have more spheres than it holds");
     left -= bodies.back().sphere_count;
-  }
-  refuse.unless(bodies.empty() || left == 0, "it holds spheres of no body");
+  });
+  list.unless(bodies.empty() || left == 0, "it holds spheres of no body");
   return bodies;
 }
 
@@ -321,34 +308,27 @@ std::string internal::encode_spheres(const SphereFile& file, const std::string& 
 }
 
 SphereFile internal::decode_spheres(std::string_view text, const std::string& name) {
-  const Refusal refuse(name);
-  const json document = internal::parse_json<json>(text, refuse);
-  refuse.unless(document.is_object(), "is not an object");
+  const json parsed = parse_json<json>(text, Refusal(name));
+  const Value document(parsed, name);
+  document.expect(parsed.is_object(), "is not an object");
   const auto format = document.find("format");
-  refuse.unless(format != document.end() && *format == kFormat,
-                "is not of format \"" + std::string(kFormat) + "\"");
-  const json& version = member(document, "version", "file", refuse);
-  refuse.unless(version.is_number_unsigned() && version.get<std::uint64_t>() >= 1,
-                "\"version\" is not a positive integer");
-  refuse.unless(version.get<std::uint64_t>() <= kVersion,
-                "has format version " + version.dump() + "; this program reads versions up to " +
-                    std::to_string(kVersion));
-  const json& spheres = member(document, "spheres", "file", refuse);
-  refuse.unless(spheres.is_array(), "\"spheres\" is not a list");
+  document.expect(format && format->json() == kFormat,
+                  "is not of format \"" + std::string(kFormat) + "\"");
+  const Value version = document.at("version");
+  version.expect(version.json().is_number_unsigned() && version.json() >= 1,
+                 "is not a positive integer");
+  document.expect(version.json() <= kVersion, "has format version " + version.json().dump() +
+                                                  "; this program reads versions up to " +
+                                                  std::to_string(kVersion));
 
   SphereFile file;
-  file.spheres.reserve(spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    file.spheres.push_back(read_sphere(spheres[i], i, refuse));
-  }
-  const auto certificate = document.find("certificate");
-  if (certificate != document.end() && !certificate->is_null()) {
-    file.certificate = read_certificate(*certificate, file.spheres.size(), refuse);
-  }
-  file.options = read_options(document, "", refuse);
-  file.interrupted = read_interrupted(document, "", refuse);
-  if (const auto bodies = document.find("bodies"); bodies != document.end()) {
-    file.bodies = read_bodies(*bodies, file.spheres.size(), refuse);
+  document.at("spheres").each(
+      "sphere ", [&](const Value& sphere) { file.spheres.push_back(read_sphere(sphere)); });
+  file.certificate = certificate_if_there(document, file.spheres.size());
+  file.options = read_options(document);
+  file.interrupted = read_interrupted(document);
+  if (const auto bodies = document.find("bodies")) {
+    file.bodies = read_bodies(*bodies, file.spheres.size());
   }
   return file;
 }

@@ -9,7 +9,6 @@
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
-#include <IGESData_UndefinedEntity.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
@@ -20,45 +19,13 @@
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
-#include <Standard_Type.hxx>
-#include <StepBasic_Document.hxx>
-#include <StepBasic_ExternalIdentificationAssignment.hxx>
-#include <StepBasic_ProductDefinitionWithAssociatedDocuments.hxx>
 #include <StepData_UndefinedEntity.hxx>
-#include <StepGeom_CartesianTransformationOperator.hxx>
-#include <StepGeom_Curve.hxx>
-#include <StepGeom_Direction.hxx>
-#include <StepGeom_Placement.hxx>
-#include <StepGeom_Point.hxx>
 #include <StepGeom_Surface.hxx>
-#include <StepGeom_Vector.hxx>
-#include <StepRepr_DefinitionalRepresentation.hxx>
-#include <StepRepr_FunctionallyDefinedTransformation.hxx>
 #include <StepRepr_MappedItem.hxx>
-#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_Representation.hxx>
 #include <StepRepr_RepresentationItem.hxx>
-#include <StepRepr_RepresentationMap.hxx>
-#include <StepShape_Block.hxx>
-#include <StepShape_BooleanResult.hxx>
-#include <StepShape_EdgeBasedWireframeModel.hxx>
-#include <StepShape_FaceBasedSurfaceModel.hxx>
-#include <StepShape_FaceSurface.hxx>
 #include <StepShape_GeometricSet.hxx>
 #include <StepShape_GeometricSetSelect.hxx>
-#include <StepShape_HalfSpaceSolid.hxx>
-#include <StepShape_ManifoldSolidBrep.hxx>
-#include <StepShape_MeasureRepresentationItemAndQualifiedRepresentationItem.hxx>
-#include <StepShape_QualifiedRepresentationItem.hxx>
-#include <StepShape_RightAngularWedge.hxx>
-#include <StepShape_RightCircularCone.hxx>
-#include <StepShape_RightCircularCylinder.hxx>
-#include <StepShape_ShellBasedSurfaceModel.hxx>
-#include <StepShape_SolidModel.hxx>
-#include <StepShape_Sphere.hxx>
-#include <StepShape_TopologicalRepresentationItem.hxx>
-#include <StepShape_Torus.hxx>
-#include <StepVisual_TessellatedItem.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TDF_Label.hxx>
@@ -85,6 +52,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <span>
 
 namespace spherule::internal {
 namespace {
@@ -92,10 +60,21 @@ namespace {
 using Model = Handle(Interface_InterfaceModel);
 using Entity = Handle(Standard_Transient);
 
-template <typename Types>
-bool is_kind_of(const Entity& entity, const Types& types) {
-  return std::any_of(std::begin(types), std::end(types),
-                     [&](const Handle(Standard_Type) & type) { return entity->IsKind(type); });
+// Its number in the file and its type.
+std::string entity_name(const Model& model, const Entity& entity) {
+  std::string type = entity->DynamicType()->Name();
+  type.erase(0, type.find('_') + 1);
+  if (const auto unknown = Handle(StepData_UndefinedEntity)::DownCast(entity); !unknown.IsNull()) {
+    type = unknown->StepType();
+  } else if (const auto iges = Handle(IGESData_IGESEntity)::DownCast(entity); !iges.IsNull()) {
+    type = "type " + std::to_string(iges->TypeNumber());
+  }
+  return std::string(model->StringLabel(entity)->ToCString()) + " (" + type + ")";
+}
+
+// By the names of OpenCASCADE's classes, of which it would take as many headers.
+bool is_kind_of(const Entity& entity, std::span<const char* const> types) {
+  return std::ranges::any_of(types, [&](const char* type) { return entity->IsKind(type); });
 }
 
 template <typename Numbers>
@@ -105,46 +84,45 @@ bool is_one_of(int number, const Numbers& numbers) {
 
 // A STEP entity that makes the shape more than OpenCASCADE says it is.
 bool is_refused(const Entity& entity) {
-  static const Handle(Standard_Type)
-      kRefused[] = {STANDARD_TYPE(StepData_UndefinedEntity),
-                    STANDARD_TYPE(StepBasic_Document),
-                    STANDARD_TYPE(StepBasic_ExternalIdentificationAssignment),
-                    STANDARD_TYPE(StepBasic_ProductDefinitionWithAssociatedDocuments),
-                    STANDARD_TYPE(StepGeom_CartesianTransformationOperator),
-                    STANDARD_TYPE(StepRepr_FunctionallyDefinedTransformation),
-                    STANDARD_TYPE(StepShape_Block),
-                    STANDARD_TYPE(StepShape_BooleanResult),
-                    STANDARD_TYPE(StepShape_HalfSpaceSolid),
-                    STANDARD_TYPE(StepShape_RightAngularWedge),
-                    STANDARD_TYPE(StepShape_RightCircularCone),
-                    STANDARD_TYPE(StepShape_RightCircularCylinder),
-                    STANDARD_TYPE(StepShape_Sphere),
-                    STANDARD_TYPE(StepShape_Torus),
-                    STANDARD_TYPE(StepVisual_TessellatedItem)};
-  const bool is_other_solid = entity->IsKind(STANDARD_TYPE(StepShape_SolidModel)) &&
-                              !entity->IsKind(STANDARD_TYPE(StepShape_ManifoldSolidBrep));
-  const bool is_other_face = entity->IsKind(STANDARD_TYPE(StepShape_Face)) &&
-                             !entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface));
+  constexpr const char* kRefused[] = {"StepData_UndefinedEntity",
+                                      "StepBasic_Document",
+                                      "StepBasic_ExternalIdentificationAssignment",
+                                      "StepBasic_ProductDefinitionWithAssociatedDocuments",
+                                      "StepGeom_CartesianTransformationOperator",
+                                      "StepRepr_FunctionallyDefinedTransformation",
+                                      "StepShape_Block",
+                                      "StepShape_BooleanResult",
+                                      "StepShape_HalfSpaceSolid",
+                                      "StepShape_RightAngularWedge",
+                                      "StepShape_RightCircularCone",
+                                      "StepShape_RightCircularCylinder",
+                                      "StepShape_Sphere",
+                                      "StepShape_Torus",
+                                      "StepVisual_TessellatedItem"};
+  const bool is_other_solid =
+      entity->IsKind("StepShape_SolidModel") && !entity->IsKind("StepShape_ManifoldSolidBrep");
+  const bool is_other_face =
+      entity->IsKind("StepShape_Face") && !entity->IsKind("StepShape_FaceSurface");
   return is_other_solid || is_other_face || is_kind_of(entity, kRefused);
 }
 
 // Whether an item of a representation is read, checked as an entity of its own, or no part of a
 // shape (notes, styles, measures).
 bool is_known_item(const Entity& item) {
-  static const Handle(Standard_Type)
-      kKnown[] = {STANDARD_TYPE(StepGeom_Curve),
-                  STANDARD_TYPE(StepGeom_Direction),
-                  STANDARD_TYPE(StepGeom_Placement),
-                  STANDARD_TYPE(StepGeom_Point),
-                  STANDARD_TYPE(StepGeom_Vector),
-                  STANDARD_TYPE(StepShape_EdgeBasedWireframeModel),
-                  STANDARD_TYPE(StepShape_FaceBasedSurfaceModel),
-                  STANDARD_TYPE(StepShape_GeometricSet),
-                  STANDARD_TYPE(StepShape_ManifoldSolidBrep),
-                  STANDARD_TYPE(StepShape_MeasureRepresentationItemAndQualifiedRepresentationItem),
-                  STANDARD_TYPE(StepShape_QualifiedRepresentationItem),
-                  STANDARD_TYPE(StepShape_ShellBasedSurfaceModel),
-                  STANDARD_TYPE(StepShape_TopologicalRepresentationItem)};
+  constexpr const char* kKnown[] = {
+      "StepGeom_Curve",
+      "StepGeom_Direction",
+      "StepGeom_Placement",
+      "StepGeom_Point",
+      "StepGeom_Vector",
+      "StepShape_EdgeBasedWireframeModel",
+      "StepShape_FaceBasedSurfaceModel",
+      "StepShape_GeometricSet",
+      "StepShape_ManifoldSolidBrep",
+      "StepShape_MeasureRepresentationItemAndQualifiedRepresentationItem",
+      "StepShape_QualifiedRepresentationItem",
+      "StepShape_ShellBasedSurfaceModel",
+      "StepShape_TopologicalRepresentationItem"};
   const std::string_view type = item->DynamicType()->Name();
   return type.starts_with("StepRepr_") || type.starts_with("StepVisual_") ||
          is_kind_of(item, kKnown);
@@ -157,11 +135,10 @@ void check_step(const Model& model, const Entity& entity, const std::string& sub
   if (is_refused(entity)) refuse(entity);
   if (const auto mapped = Handle(StepRepr_MappedItem)::DownCast(entity); !mapped.IsNull()) {
     const Entity target = mapped->MappingTarget();
-    if (target.IsNull() || !target->IsKind(STANDARD_TYPE(StepGeom_Placement))) refuse(entity);
+    if (target.IsNull() || !target->IsKind("StepGeom_Placement")) refuse(entity);
   }
   const auto representation = Handle(StepRepr_Representation)::DownCast(entity);
-  if (representation.IsNull() ||
-      entity->IsKind(STANDARD_TYPE(StepRepr_DefinitionalRepresentation))) {
+  if (representation.IsNull() || entity->IsKind("StepRepr_DefinitionalRepresentation")) {
     return;
   }
   for (int i = 1; i <= representation->NbItems(); ++i) {
@@ -177,8 +154,7 @@ void check_iges(const Model& model, const Handle(IGESData_IGESEntity) & entity,
   constexpr int kRefused[] = {136, 412, 414, 416, 430};
   const int type = entity->TypeNumber();
   const bool is_solid = type >= 150 && type <= 184;
-  if (is_solid || is_one_of(type, kRefused) ||
-      entity->IsKind(STANDARD_TYPE(IGESData_UndefinedEntity))) {
+  if (is_solid || is_one_of(type, kRefused) || entity->IsKind("IGESData_UndefinedEntity")) {
     throw Error(subject, "holds " + entity_name(model, entity) + ", which is not read");
   }
 }
@@ -196,19 +172,7 @@ bool is_needed_of_iges(const Handle(IGESData_IGESEntity) & entity, const Interfa
   return true;
 }
 
-}  // namespace
-
-std::string entity_name(const Model& model, const Entity& entity) {
-  std::string type = entity->DynamicType()->Name();
-  type.erase(0, type.find('_') + 1);
-  if (const auto unknown = Handle(StepData_UndefinedEntity)::DownCast(entity); !unknown.IsNull()) {
-    type = unknown->StepType();
-  } else if (const auto iges = Handle(IGESData_IGESEntity)::DownCast(entity); !iges.IsNull()) {
-    type = "type " + std::to_string(iges->TypeNumber());
-  }
-  return std::string(model->StringLabel(entity)->ToCString()) + " (" + type + ")";
-}
-
+// Refuses types that OpenCASCADE reads wrongly, by their names in the bytes of a STEP file.
 void check_step_text(std::string_view bytes, const std::string& subject) {
   // Scaled copies are read unscaled, or end the program.
   constexpr std::string_view kScaled = "CARTESIAN_TRANSFORMATION_OPERATOR";
@@ -220,6 +184,10 @@ void check_step_text(std::string_view bytes, const std::string& subject) {
                            std::string(kScaled) + "), which is not read");
 }
 
+// Refuses entities that are broken, of an unknown type or of one that is not read: solids other
+// than breps, tessellations, other files, scaled copies, items of a representation that are neither
+// known to be read nor known to be no part of a shape. OpenCASCADE leaves out silently what it has
+// no shape for.
 void check_entities(const Model& model, const std::string& subject) {
   const auto check = [&](const Handle(Interface_Check) & found, const std::string& what) {
     if (!found->HasFailed()) return;
@@ -238,6 +206,8 @@ void check_entities(const Model& model, const std::string& subject) {
   }
 }
 
+// The entities without whose shape a part would lack something: faces, surfaces that stand for
+// themselves, and copies of parts.
 std::vector<Entity> needed_entities(const Model& model) {
   const Interface_Graph graph(model);
   std::vector<Entity> needed;
@@ -251,16 +221,13 @@ std::vector<Entity> needed_entities(const Model& model) {
           needed.push_back(surface);
         }
       }
-    } else if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) ||
-               entity->IsKind(STANDARD_TYPE(StepRepr_MappedItem)) ||
-               entity->IsKind(STANDARD_TYPE(StepRepr_NextAssemblyUsageOccurrence))) {
+    } else if (entity->IsKind("StepShape_FaceSurface") || entity->IsKind("StepRepr_MappedItem") ||
+               entity->IsKind("StepRepr_NextAssemblyUsageOccurrence")) {
       needed.push_back(entity);
     }
   }
   return needed;
 }
-
-namespace {
 
 // Empty where there is none, and where it is one that programs make up: "=>[0:1:1:2]", "NAUO7".
 std::string name_of(const TDF_Label& label) {
@@ -335,8 +302,9 @@ std::vector<CadLeaf> solids_of(const CadLeaf& leaf) {
   return solids;
 }
 
-}  // namespace
-
+// Has the reader, which has read its file, translate all of it, and names the parts of the
+// assembly: "GEARBOX/SHAFT", by their place in it where that has a name, else by the part. May
+// throw what OpenCASCADE throws.
 std::vector<CadLeaf> leaves_of_assembly(STEPCAFControl_Reader& reader) {
   reader.SetNameMode(true);
   reader.SetColorMode(false);
@@ -366,6 +334,8 @@ std::vector<CadLeaf> leaves_of_assembly(STEPCAFControl_Reader& reader) {
   return leaves;
 }
 
+// Parts of several solids as these, "PLATE/1", "PLATE/2", and what is no solid as another; parts
+// without faces are left out. No name is there twice: others of it become "BOLT:2", "BOLT:3".
 std::vector<CadLeaf> split_solids(const std::vector<CadLeaf>& leaves) {
   std::vector<CadLeaf> bodies;
   for (const CadLeaf& leaf : leaves) {
@@ -388,8 +358,6 @@ std::vector<CadLeaf> split_solids(const std::vector<CadLeaf>& leaves) {
   }
   return bodies;
 }
-
-namespace {
 
 // Keeps OpenCASCADE from printing.
 class Silence {

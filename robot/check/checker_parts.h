@@ -4,12 +4,12 @@
 // What a RobotChecker and its scratch consist of.
 
 #include "base/error.h"
+#include "base/threads.h"
 #include "robot/check/body_pairs.h"
 #include "robot/check/lane_check.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/static_trees.h"
 #include "robot/model/robot_model.h"
-#include "robot/model/shared_work.h"
 #include "robot/model/shortest_motion.h"
 
 #include <algorithm>

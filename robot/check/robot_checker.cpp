@@ -3,12 +3,12 @@
 
 #include "base/error.h"
 #include "base/rounding.h"
+#include "base/threads.h"
 #include "collide/collide.h"
 #include "collide/mechanism/mechanism_check.h"
 #include "robot/check/checker_parts.h"
 #include "robot/model/joint_positions.h"
 #include "robot/model/kinematics.h"
-#include "robot/model/shared_work.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "robot/check/body_pairs.h"
 #include "robot/check/robot_scene.h"
-#include "robot/model/shared_work.h"
+#include "robot/cover/alarm_sample.h"
 
 #include <cassert>
 #include <cstddef>

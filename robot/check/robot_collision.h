@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Does a placed robot overlap a single obstacle? For more, see RobotScene.
+// Collisions of a robot without a scene: whether a placed robot overlaps a single obstacle, why
+// pairs of its links are tested against each other or not, and which of them touch in sampled
+// configurations. For more, see RobotScene.
 //
 // @code{.cpp}
 // #include <spherule/robot/check/robot_collision.h>
@@ -42,7 +44,7 @@ bool robot_collides(const RobotModel& robot, std::span<const Pose> world_from_li
 
 }  // namespace spherule
 
-// Why pairs of links are tested against each other, or not.
+// Pairs of links.
 //
 // @code{.cpp}
 // #include <iostream>
@@ -83,7 +85,7 @@ std::string_view kind_of(const PairStatus& status);
 
 }  // namespace spherule
 
-// Which links of a robot touch in sampled configurations?
+// Sampled configurations.
 //
 // @code{.cpp}
 //

@@ -2,15 +2,14 @@
 #include "robot/cover/alarm_sample.h"
 
 #include "base/error.h"
+#include "base/threads.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "robot/model/shared_work.h"
 #include "robot/pairs/link_pieces.h"
 #include "robot/pairs/proof_scope.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <mutex>
@@ -54,18 +53,8 @@ std::size_t piece_count(std::size_t count) {
 AlarmJudge::AlarmJudge(const RobotModel& robot, std::span<const LinkBody> bodies,
                        const AllowedCollisions& allowed, const LinkPairs* proofs,
                        const std::function<bool(int)>& has_spheres)
-    : robot_(robot), proofs_(proofs), bodies_(robot.links().size()) {
+    : robot_(robot), proofs_(proofs), bodies_(bodies_by_link(robot, bodies)) {
   const int count = static_cast<int>(robot.links().size());
-  for (const LinkBody& body : bodies) {
-    if (body.link < 0 || body.link >= count) {
-      throw Error("body", "there is no link " + std::to_string(body.link));
-    }
-    if ((body.mesh == nullptr) == (body.spheres == nullptr)) {
-      throw Error("body of link " + robot.links()[static_cast<std::size_t>(body.link)].name,
-                  "must be a mesh or spheres");
-    }
-    bodies_[static_cast<std::size_t>(body.link)].push_back(body);
-  }
   if (proofs != nullptr) {
     require_proofs_of(*proofs, robot);
     if (proofs->bodies() != bodies_fingerprint(bodies)) {
@@ -227,6 +216,16 @@ double AlarmSample::gap(std::size_t pair, std::size_t free) const {
     (comes_within(middle) ? high : low) = middle;
   }
   return high;
+}
+
+void draw_configuration(const RobotModel& robot, std::mt19937_64& bits,
+                        std::span<double> configuration) {
+  for (std::size_t i = 0; i < configuration.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(robot.variable_joints()[i]);
+    const double lower = robot.joints()[joint].lower;
+    const double part = static_cast<double>(bits() >> 11) * 0x1p-53;
+    configuration[i] = lower + (robot.joints()[joint].upper - lower) * part;
+  }
 }
 
 std::vector<double> draw_postures(const RobotModel& robot, std::size_t count, std::uint64_t seed) {

@@ -4,11 +4,13 @@
 #include "robot/cover/false_alarms.h"
 #include "spheretree/sphere_tree.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <random>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,17 +40,10 @@ class PostureSet {
   }
 
   // Both are sets of the same number of postures.
-  PostureSet& operator|=(const PostureSet& other) {
-    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];
-    return *this;
-  }
-  PostureSet& operator&=(const PostureSet& other) {
-    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= other.words_[i];
-    return *this;
-  }
+  PostureSet& operator|=(const PostureSet& other) { return combine(other, std::bit_or<>()); }
+  PostureSet& operator&=(const PostureSet& other) { return combine(other, std::bit_and<>()); }
   PostureSet& operator-=(const PostureSet& other) {
-    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= ~other.words_[i];
-    return *this;
+    return combine(other, [](std::uint64_t a, std::uint64_t b) { return a & ~b; });
   }
 
   // Words of kWordBits postures: threads may insert into different ones at once.
@@ -67,6 +62,12 @@ class PostureSet {
   }
 
  private:
+  template <class Combine>
+  PostureSet& combine(const PostureSet& other, Combine by) {
+    std::ranges::transform(words_, other.words_, words_.begin(), by);
+    return *this;
+  }
+
   std::vector<std::uint64_t> words_;
 };
 
@@ -149,6 +150,11 @@ class AlarmSample {
   std::size_t slot_count_ = 0;
   std::vector<Pose> poses_;  // of all tested links, for each free posture
 };
+
+// Draws positions evenly between the limits of the joints that the variables move; turning joints
+// without limits get a whole turn. `configuration` has variable_count() numbers.
+void draw_configuration(const RobotModel& robot, std::mt19937_64& bits,
+                        std::span<double> configuration);
 
 // So many postures, drawn with a seed.
 std::vector<double> draw_postures(const RobotModel& robot, std::size_t count, std::uint64_t seed);

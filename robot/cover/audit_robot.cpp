@@ -6,7 +6,6 @@
 #include "geometry/surface_sampling.h"
 #include "geometry/triangle_mesh.h"
 #include "robot/cover/link_parts.h"
-#include "robot/cover/primitive_mesh.h"
 #include "robot/model/kinematics.h"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Certifies the spheres of a robot, of any origin.
+// Certifies the spheres of a robot, of any origin, and makes them cover it.
 //
 // @code{.cpp}
 // #include <spherule/robot/cover/audit_robot.h>

@@ -2,10 +2,10 @@
 #include "robot/cover/false_alarms.h"
 
 #include "base/error.h"
+#include "base/threads.h"
 #include "robot/cover/alarm_sample.h"
 #include "robot/cover/goal_cover.h"
 #include "robot/cover/link_mesh.h"
-#include "robot/model/shared_work.h"
 #include "spheretree/build.h"
 
 #include <algorithm>
@@ -35,15 +35,8 @@ FalseAlarms measure(const RobotModel& robot, std::span<const LinkBody> bodies,
 }  // namespace
 
 std::string_view name_of(PairProofs proofs) {
-  switch (proofs) {
-    case PairProofs::kNever:
-      return "never";
-    case PairProofs::kBoxes:
-      return "boxes";
-    case PairProofs::kNone:
-      break;
-  }
-  return "none";
+  constexpr std::array<std::string_view, 3> kNames = {"none", "never", "boxes"};
+  return kNames[static_cast<std::size_t>(proofs)];
 }
 
 double RefusedShare::share() const {

@@ -8,7 +8,6 @@
 #include "io/length_unit.h"
 #include "io/mesh_io.h"
 #include "robot/cover/link_parts.h"
-#include "robot/cover/primitive_mesh.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The shapes of a link as one mesh.
+// The shapes of a link as one mesh, and what links are made of for proofs about pairs of them.
 //
 // @code{.cpp}
 // #include <spherule/robot/cover/link_mesh.h>

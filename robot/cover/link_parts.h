@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "collide/solids/primitive.h"
 #include "geometry/mesh_report.h"
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
@@ -55,11 +56,8 @@ inline void report(const Progress& progress, std::size_t done, std::size_t all,
   if (progress) progress(static_cast<double>(done) / static_cast<double>(all), link.c_str());
 }
 
-}  // namespace spherule::internal
-
 // Sentences about a link's size that follow its name; empty where nothing is to be said. `across`
 // is the diagonal of the box of its mesh; lengths are in metres.
-namespace spherule::internal {
 
 // Why a link is not to be covered, or its spheres examined, for so small a max error.
 std::string size_fault(double across, double max_error);
@@ -98,5 +96,25 @@ std::string openness(const MeshReport& report);
 // a hand, legs of a walking robot. A link's own index where no earlier link has the same shapes, or
 // where it has none.
 std::vector<std::size_t> first_equal_links(const RobotDescription& robot, LinkGeometry geometry);
+
+// A closed mesh about a solid primitive, seen counter-clockwise from outside. In exact arithmetic
+// it encloses every point of the primitive and lies within `chord_error` of it; the mesh's
+// vertex_error bounds what rounding moved. A box comes out exactly.
+//
+// A curved primitive is a polygon, tangent to its outline, that is turned about z: rings of equal
+// regular polygons whose sides touch the outline's circles. The directions come from halving
+// angles by square roots, so that they are the same on every machine.
+//
+// Throws Error, naming `subject`, for a half-space, sizes that require_primitive() refuses, a
+// chord error that is not positive, and one that requires more than 1024 sides.
+TriangleMesh mesh_around(const Primitive& primitive, double chord_error,
+                         const std::string& subject);
+
+// Whether every shape is a primitive that lies in a single one of the spheres, in exact arithmetic,
+// and the spheres that hold them enclose no cavity: then these cover the shapes and their inside
+// (G1), without any tessellation. False may also mean that this is not proved: it is not where a
+// shape is a mesh, nor where one of the spheres that hold them overlaps more than two others of
+// these. The spheres are usable.
+bool lie_in_single_spheres(std::span<const LinkShape> shapes, std::span<const Sphere> spheres);
 
 }  // namespace spherule::internal

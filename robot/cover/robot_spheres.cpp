@@ -4,11 +4,11 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/text.h"
+#include "base/threads.h"
 #include "geometry/mesh_report.h"
 #include "geometry/triangle_mesh.h"
 #include "robot/cover/link_parts.h"
 #include "robot/model/link_paths.h"
-#include "robot/model/shared_work.h"
 
 #include <algorithm>
 #include <atomic>
@@ -19,7 +19,6 @@
 #include <span>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -53,15 +52,6 @@ void check_lengths(double max_error, double min_external_diameter, double paddin
   require(usable(padding), prefix + "padding", "must be finite and not negative");
 }
 
-template <typename Work>
-void blaming_link(const std::string& link, Work work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    throw Error(internal::subject_of(link), error.what());
-  }
-}
-
 SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& options) {
   SimplifyOptions result;
   result.max_error = options.max_error;
@@ -81,7 +71,7 @@ SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& op
   result.zones = own->second.zones;
   check_lengths(result.max_error, result.min_external_diameter, result.padding,
                 internal::subject_of(link) + " ");
-  blaming_link(link, [&] {
+  internal::of_link(link, [&] {
     SimplifyOptions complete = result;
     complete_lengths(complete, {});
     check_zones(complete.zones, complete.max_error, complete.min_external_diameter);
@@ -198,7 +188,7 @@ LinkCover cover_link(const std::string& link, const Task& task, double weld) {
   const auto start = std::chrono::steady_clock::now();
   LinkCover cover;
   cover.link = link;
-  blaming_link(link, [&] { cover.fit = simplify(task.mesh, task.options); });
+  internal::of_link(link, [&] { cover.fit = simplify(task.mesh, task.options); });
   cover.spheres = cover.fit->cover.spheres;
   cover.triangles = task.mesh.triangles.size();
   cover.vertex_error = task.mesh.vertex_error;
@@ -216,23 +206,13 @@ LinkCover of_equal_link(LinkCover cover, const std::string& link) {
   return cover;
 }
 
-// Links are covered side by side by some of the threads; the others help within links, which is
-// what is left to do when the last links are long ones.
-struct ThreadShares {
-  ThreadShares(std::size_t all, std::size_t tasks)
-      : links(std::min((all + 1) / 2, tasks)), within(static_cast<int>(all - links + 1)) {}
-
-  std::size_t links;  // at once
-  int within;         // threads of simplify(), the link's own and those that all links share
-};
-
 }  // namespace
 
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options) {
   check_options(robot, options);
-  const std::size_t all_threads = internal::thread_count(options.threads);
-  std::vector<Task> tasks = read_links(robot, options, all_threads);
-  const ThreadShares threads(all_threads, tasks.size());
+  const internal::ThreadLimit limit(options.threads);
+  const std::size_t threads = internal::thread_count();
+  std::vector<Task> tasks = read_links(robot, options, threads);
 
   RobotCover result{.robot = robot.name, .links = {}, .options = options};
   for (const LinkDescription& link : robot.links) result.links.push_back({.link = link.name});
@@ -242,7 +222,9 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
     return a.mesh.triangles.size() > b.mesh.triangles.size();
   });
   std::atomic<std::size_t> done = 0;
-  internal::share_work(tasks.size(), threads.links, [&](std::size_t, std::size_t i) {
+  // Half of the threads begin a link each, as memory is needed for each; the others help within
+  // links, which is what is left to do when the last links are long ones.
+  internal::share_work(tasks.size(), (threads + 1) / 2, [&](std::size_t, std::size_t i) {
     Task& task = tasks[i];
     const std::string& name = robot.links[task.links.front()].name;
     const auto tell = [&] {
@@ -250,7 +232,6 @@ RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& o
       if (options.progress) options.progress(share, name.c_str());
     };
     if (options.progress) task.options.progress = [&tell](double, const char*) { tell(); };
-    task.options.threads = threads.within;
     tell();
     LinkCover& cover = result.links[task.links.front()];
     cover = cover_link(name, task, options.weld);

@@ -87,18 +87,15 @@ std::vector<Vector3d> ply_points(internal::PlyData& data) {
 }  // namespace
 
 PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale) {
-  static constexpr std::array<std::string_view, 5> kTextExtensions = {".xyz", ".txt", ".csv",
-                                                                      ".asc", ".pts"};
+  static constexpr std::array<std::string_view, 5> kTextExtensions = {"xyz", "txt", "csv", "asc",
+                                                                      "pts"};
   const std::string file = path.string();
   if (!(scale >= kLeastScale && scale <= kMaxCoordinate)) {
     throw Error(file, "the scale is not a number from 1e-300 to 1e15");
   }
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  const bool is_ply = extension == ".ply";
-  if (!is_ply && std::find(kTextExtensions.begin(), kTextExtensions.end(), extension) ==
-                     kTextExtensions.end()) {
+  const std::string extension = internal::lower_extension(path);
+  const bool is_ply = extension == "ply";
+  if (!is_ply && std::ranges::find(kTextExtensions, extension) == kTextExtensions.end()) {
     throw Error(file, "points are read from files named .ply, .xyz, .txt, .csv, .asc or .pts");
   }
   const std::string content = read_file(path);
@@ -110,7 +107,7 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
     is_rounded = data.is_text();
   } else {
     cloud.points = text_points(content, file,
-                               extension == ".pts" ? FirstLine::kPointOrCount : FirstLine::kPoint);
+                               extension == "pts" ? FirstLine::kPointOrCount : FirstLine::kPoint);
   }
   if (cloud.points.empty()) throw Error(file, "it has no points");
   double largest = 0.0;

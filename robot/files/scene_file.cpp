@@ -25,111 +25,54 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kFormat = "spherule-scene";
 constexpr std::int64_t kVersion = 1;
 
-// A value with the place where it stands, for messages.
-class Value {
- public:
-  Value(const Json& json, std::string place, const std::string& file)
-      : json_(json), place_(std::move(place)), file_(file) {}
+using Value = internal::JsonValue<Json>;
 
-  [[noreturn]] void refuse(const std::string& reason) const {
-    throw Error(file_, place_.empty() ? reason : place_ + ": " + reason);
-  }
-  void unless(bool good, const std::string& reason) const {
-    if (!good) refuse(reason);
-  }
+std::string name_of(const Value& value) {
+  const std::string name = value.text();
+  value.expect(!name.empty(), "is empty");
+  return name;
+}
 
-  // An object with no keys but these.
-  void require_keys(std::initializer_list<std::string_view> keys) const {
-    unless(json_.is_object(), "is not an object");
-    for (const auto& [key, value] : json_.items()) {
-      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      const std::vector<std::string> known(keys.begin(), keys.end());
-      refuse("the key " + internal::in_quotes(key) + " is not known here" +
-             internal::did_you_mean(key, known));
-    }
-  }
-  bool has(const char* key) const { return json_.contains(key); }
-  Value at(const char* key) const {
-    const auto found = json_.find(key);
-    if (found == json_.end()) refuse(internal::in_quotes(key) + " is missing");
-    return Value(*found, place_.empty() ? key : place_ + ", " + key, file_);
-  }
-  // The elements of a list, of which each is called `what` and its number; none if it is not there.
-  template <class Take>
-  void each(const char* key, const std::string& what, const Take& take) const {
-    if (!has(key)) return;
-    const Value list = at(key);
-    list.unless(list.json_.is_array(), "is not a list");
-    for (std::size_t i = 0; i < list.json_.size(); ++i) {
-      take(Value(list.json_[i], what + " " + std::to_string(i), file_));
-    }
-  }
-  // The same place with the name of what stands there.
-  Value named(const std::string& name) const {
-    return Value(json_, place_ + " " + internal::in_quotes(name), file_);
-  }
+double number_of(const Value& value) {
+  const double number = value.number();
+  value.expect(is_usable_coordinate(number), "is beyond 1e15");
+  return number;
+}
 
-  std::string text() const {
-    unless(json_.is_string(), "is not a text");
-    return json_.get<std::string>();
-  }
-  std::string name() const {
-    const std::string name = text();
-    unless(!name.empty(), "is empty");
-    return name;
-  }
-  double number() const {
-    unless(json_.is_number(), "is not a number");
-    const double value = json_.get<double>();
-    unless(is_usable_coordinate(value), "is beyond 1e15");
-    return value;
-  }
-  double positive() const {
-    const double value = number();
-    unless(value > 0.0, "is not above 0");
-    return value;
-  }
-  double not_negative() const {
-    const double value = number();
-    unless(value >= 0.0, "is below 0");
-    return value;
-  }
-  std::int64_t whole() const {
-    unless(json_.is_number_integer(), "is not a whole number");
-    return json_.get<std::int64_t>();
-  }
-  template <int kCount>
-  Eigen::Matrix<double, kCount, 1> numbers() const {
-    unless(json_.is_array() && json_.size() == kCount,
-           "is not a list of " + std::to_string(kCount) + " numbers");
-    Eigen::Matrix<double, kCount, 1> result;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      result[static_cast<Eigen::Index>(i)] = Value(json_[i], place_, file_).number();
-    }
-    return result;
-  }
-  bool is_list() const { return json_.is_array(); }
+double positive(const Value& value) {
+  const double number = number_of(value);
+  value.expect(number > 0.0, "is not above 0");
+  return number;
+}
 
- private:
-  const Json& json_;
-  std::string place_;
-  const std::string& file_;
-};
+double not_negative(const Value& value) {
+  const double number = number_of(value);
+  value.expect(number >= 0.0, "is below 0");
+  return number;
+}
+
+template <int kCount>
+Eigen::Matrix<double, kCount, 1> numbers(const Value& value) {
+  const auto list = value.numbers<kCount>("a list of " + std::to_string(kCount) + " numbers");
+  const Eigen::Matrix<double, kCount, 1> result(list.data());
+  value.expect(result.cwiseAbs().maxCoeff() <= kMaxCoordinate, "is beyond 1e15");
+  return result;
+}
 
 Pose read_pose(const Value& object) {
   if (!object.has("pose")) return {};
   const Value pose = object.at("pose");
   pose.require_keys({"position", "quaternion", "rpy"});
   const Vector3d position =
-      pose.has("position") ? pose.at("position").numbers<3>() : Vector3d(Vector3d::Zero());
+      pose.has("position") ? numbers<3>(pose.at("position")) : Vector3d(Vector3d::Zero());
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   pose.unless(!(pose.has("quaternion") && pose.has("rpy")), "has both 'quaternion' and 'rpy'");
   if (pose.has("quaternion")) {
-    const Eigen::Vector4d q = pose.at("quaternion").numbers<4>();
-    pose.at("quaternion").unless(q.norm() > 1e-9, "is zero");
+    const Eigen::Vector4d q = numbers<4>(pose.at("quaternion"));
+    pose.at("quaternion").expect(q.norm() > 1e-9, "is zero");
     rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
   } else if (pose.has("rpy")) {
-    const Vector3d rpy = pose.at("rpy").numbers<3>();
+    const Vector3d rpy = numbers<3>(pose.at("rpy"));
     rotation = Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) *
                Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
                Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX());
@@ -140,41 +83,51 @@ Pose read_pose(const Value& object) {
 class SceneReader {
  public:
   SceneReader(const fs::path& path, const Json& document)
-      : file_(path.string()), folder_(path.parent_path()), root_(document, {}, file_) {}
+      : file_(path.string()), folder_(path.parent_path()), root_(document, file_) {}
 
   SceneDescription read() {
+    root_.expect(root_.json().is_object(), "is not an object");
     root_.unless(root_.has("format") && root_.at("format").text() == kFormat,
                  "is no scene: 'format' is not 'spherule-scene'");
-    root_.at("version").unless(root_.at("version").whole() == kVersion,
-                               "is not 1, the version that this program reads");
+    const Value version = root_.at("version");
+    version.expect(version.json().is_number_integer(), "is not a whole number");
+    version.expect(version.json() == kVersion, "is not 1, the version that this program reads");
     root_.require_keys({"format", "version", "robot", "obstacles", "attached", "regions",
                         "allowed_contacts", "padding"});
     if (root_.has("robot")) read_robot(root_.at("robot"));
-    root_.each("obstacles", "obstacle", [this](const Value& value) { read_obstacle(value); });
-    root_.each("attached", "attached object", [this](const Value& value) { read_attached(value); });
-    root_.each("regions", "region", [this](const Value& value) { read_region(value); });
-    root_.each("allowed_contacts", "allowed contact",
-               [this](const Value& value) { read_contact(value); });
-    root_.each("padding", "padding", [this](const Value& value) { read_padding(value); });
+    using Read = void (SceneReader::*)(const Value&);
+    const auto each = [this](const char* key, const char* what, Read read) {
+      if (!root_.has(key)) return;
+      root_.at(key).each(what, [&](const Value& value) { (this->*read)(value); });
+    };
+    each("obstacles", "obstacle ", &SceneReader::read_obstacle);
+    each("attached", "attached object ", &SceneReader::read_attached);
+    each("regions", "region ", &SceneReader::read_region);
+    each("allowed_contacts", "allowed contact ", &SceneReader::read_contact);
+    each("padding", "padding ", &SceneReader::read_padding);
     return std::move(scene_);
   }
 
  private:
-  fs::path file_of(const Value& value) const { return folder_ / value.at("file").name(); }
+  fs::path file_of(const Value& value) const { return folder_ / name_of(value.at("file")); }
 
   void read_robot(const Value& robot) {
     robot.require_keys({"pose", "srdf"});
     scene_.world_from_root = read_pose(robot);
-    if (robot.has("srdf")) scene_.srdf = folder_ / robot.at("srdf").name();
+    if (robot.has("srdf")) scene_.srdf = folder_ / name_of(robot.at("srdf"));
   }
 
   // The name, which no other body or obstacle has.
   std::string take_name(const Value& value) {
-    value.unless(value.has("name"), "'name' is missing");
-    const std::string name = value.at("name").name();
+    const std::string name = name_of(value.at("name"));
     value.unless(names_.insert(name).second,
                  "the name " + internal::in_quotes(name) + " is there twice");
     return name;
+  }
+
+  // The same place with the name of what stands there.
+  static Value named(const Value& value, const std::string& name) {
+    return value.placed(value.place() + " " + internal::in_quotes(name));
   }
 
   // The one key among those of shapes.
@@ -197,35 +150,36 @@ class SceneReader {
     MeshFile result{file_of(mesh)};
     if (!mesh.has("scale")) return result;
     const Value scale = mesh.at("scale");
-    result.scale = scale.is_list() ? scale.numbers<3>() : Vector3d::Constant(scale.number());
-    scale.unless((result.scale.array() != 0.0).all(), "is 0");
+    result.scale =
+        scale.json().is_array() ? numbers<3>(scale) : Vector3d::Constant(number_of(scale));
+    scale.expect((result.scale.array() != 0.0).all(), "is 0");
     return result;
   }
 
   PointsSource read_points(const Value& points) const {
     points.require_keys({"file", "radius", "voxel", "scale"});
-    PointsSource result{file_of(points), points.at("radius").positive()};
-    if (points.has("voxel")) result.voxel = points.at("voxel").not_negative();
-    if (points.has("scale")) result.scale = points.at("scale").positive();
+    PointsSource result{file_of(points), positive(points.at("radius"))};
+    if (points.has("voxel")) result.voxel = not_negative(points.at("voxel"));
+    if (points.has("scale")) result.scale = positive(points.at("scale"));
     return result;
   }
 
   static Primitive read_primitive(const std::string& key, const Value& value) {
     if (key == "box") {
       value.require_keys({"size"});
-      return Box{value.at("size").numbers<3>()};
+      return Box{numbers<3>(value.at("size"))};
     }
     if (key == "ball") {
       value.require_keys({"radius"});
-      return SolidSphere{value.at("radius").number()};
+      return SolidSphere{number_of(value.at("radius"))};
     }
     if (key == "half_space") {
       value.require_keys({});
       return HalfSpace{};
     }
     value.require_keys({"radius", "length"});
-    const double radius = value.at("radius").number();
-    const double length = value.at("length").number();
+    const double radius = number_of(value.at("radius"));
+    const double length = number_of(value.at("length"));
     if (key == "cylinder") return Cylinder{radius, length};
     return Capsule{radius, length};
   }
@@ -242,7 +196,7 @@ class SceneReader {
     unnamed.require_keys({"name", "pose", "mesh", "spheres", "tree", "points", "box", "ball",
                           "cylinder", "capsule", "half_space"});
     SceneObstacle obstacle{take_name(unnamed), Primitive()};
-    const Value value = unnamed.named(obstacle.name);
+    const Value value = named(unnamed, obstacle.name);
     const std::string key = shape_key(value, {"mesh", "spheres", "tree", "points", "box", "ball",
                                               "cylinder", "capsule", "half_space"});
     const Value shape = value.at(key.c_str());
@@ -268,8 +222,8 @@ class SceneReader {
   void read_attached(const Value& unnamed) {
     unnamed.require_keys({"name", "link", "pose", "mesh", "spheres", "tree", "max_error"});
     SceneAttachment object{take_name(unnamed), {}, MeshFile()};
-    const Value value = unnamed.named(object.name);
-    object.link = value.at("link").name();
+    const Value value = named(unnamed, object.name);
+    object.link = name_of(value.at("link"));
     const std::string key = shape_key(value, {"mesh", "spheres", "tree"});
     const Value shape = value.at(key.c_str());
     if (key == "mesh") {
@@ -279,7 +233,7 @@ class SceneReader {
     }
     if (value.has("max_error")) {
       value.unless(key == "mesh", "'max_error' is for meshes");
-      object.max_error = value.at("max_error").positive();
+      object.max_error = positive(value.at("max_error"));
     }
     object.link_from_object = read_pose(value);
     scene_.attached.push_back(std::move(object));
@@ -287,10 +241,10 @@ class SceneReader {
 
   void read_region(const Value& value) {
     value.require_keys({"body", "name", "ball"});
-    SceneRegion region{value.at("body").name(), value.at("name").name(), {}};
+    SceneRegion region{name_of(value.at("body")), name_of(value.at("name")), {}};
     const Value sphere = value.at("ball");
     sphere.require_keys({"center", "radius"});
-    region.around = {sphere.at("center").numbers<3>(), sphere.at("radius").positive()};
+    region.around = {numbers<3>(sphere.at("center")), positive(sphere.at("radius"))};
     value.unless(regions_.insert({region.body, region.name}).second,
                  "the region " + internal::in_quotes(region.name) + " of " +
                      internal::in_quotes(region.body) + " is there twice");
@@ -299,9 +253,9 @@ class SceneReader {
 
   void read_contact(const Value& value) {
     value.require_keys({"body", "region", "other"});
-    SceneContact contact{value.at("body").name(), {}, value.at("other").name()};
+    SceneContact contact{name_of(value.at("body")), {}, name_of(value.at("other"))};
     if (value.has("region")) {
-      contact.region = value.at("region").name();
+      contact.region = name_of(value.at("region"));
       value.unless(regions_.contains({contact.body, contact.region}),
                    internal::in_quotes(contact.body) + " has no region " +
                        internal::in_quotes(contact.region));
@@ -311,8 +265,8 @@ class SceneReader {
 
   void read_padding(const Value& value) {
     value.require_keys({"body", "other", "distance"});
-    ScenePadding padding{value.at("body").name(), {}, value.at("distance").not_negative()};
-    if (value.has("other")) padding.other = value.at("other").name();
+    ScenePadding padding{name_of(value.at("body")), {}, not_negative(value.at("distance"))};
+    if (value.has("other")) padding.other = name_of(value.at("other"));
     value.unless(padded_.insert(std::minmax(padding.body, padding.other)).second,
                  "the padding of " + internal::in_quotes(padding.body) + " is given twice");
     scene_.padding.push_back(std::move(padding));
@@ -327,17 +281,11 @@ class SceneReader {
   SceneDescription scene_;
 };
 
-Json parsed(const std::string& text, const std::string& file) {
-  Json document = internal::parse_json<Json>(
-      text, [&](const std::string& reason) { throw Error(file, reason); });
-  if (!document.is_object()) throw Error(file, "is not an object");
-  return document;
-}
-
 }  // namespace
 
 SceneDescription read_scene(const fs::path& path) {
-  const Json document = parsed(read_file(path), path.string());
+  const Json document = internal::parse_json<Json>(
+      read_file(path), [&](const std::string& reason) { throw Error(path.string(), reason); });
   return SceneReader(path, document).read();
 }
 

@@ -98,28 +98,6 @@ LinkSpheres spheres_of(const XmlElement& element) {
   return result;
 }
 
-// Collects names that a robot has not got.
-class NameCheck {
- public:
-  NameCheck(const RobotModel& robot, std::vector<std::string>& unknown)
-      : robot_(robot), unknown_(unknown) {}
-
-  void link(const std::string& where, const std::string& name) const {
-    if (robot_.find_link(name) < 0) add(where, ": there is no link ", name);
-  }
-  void joint(const std::string& where, const std::string& name) const {
-    if (robot_.find_joint(name) < 0) add(where, ": there is no joint ", name);
-  }
-
- private:
-  void add(const std::string& where, const char* what, const std::string& name) const {
-    if (unknown_.size() < kMostUnknownNames) unknown_.push_back(where + what + name);
-  }
-
-  const RobotModel& robot_;
-  std::vector<std::string>& unknown_;
-};
-
 }  // namespace
 
 SemanticDescription read_srdf(const std::filesystem::path& path) {
@@ -167,29 +145,37 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
 std::vector<std::string> unknown_names(const SemanticDescription& semantics,
                                        const RobotModel& robot) {
   std::vector<std::string> unknown;
-  const NameCheck check(robot, unknown);
+  const auto add = [&](const std::string& where, const char* what, const std::string& name) {
+    if (unknown.size() < kMostUnknownNames) unknown.push_back(where + what + name);
+  };
+  const auto check_link = [&](const std::string& where, const std::string& name) {
+    if (robot.find_link(name) < 0) add(where, ": there is no link ", name);
+  };
+  const auto check_joint = [&](const std::string& where, const std::string& name) {
+    if (robot.find_joint(name) < 0) add(where, ": there is no joint ", name);
+  };
   for (const JointGroup& group : semantics.groups) {
     const std::string where = "group " + group.name;
-    for (const std::string& link : group.links) check.link(where, link);
-    for (const std::string& joint : group.joints) check.joint(where, joint);
+    for (const std::string& link : group.links) check_link(where, link);
+    for (const std::string& joint : group.joints) check_joint(where, joint);
     for (const LinkChain& chain : group.chains) {
-      check.link(where, chain.base_link);
-      check.link(where, chain.tip_link);
+      check_link(where, chain.base_link);
+      check_link(where, chain.tip_link);
     }
   }
   for (const GroupState& state : semantics.group_states) {
     const std::string where = "state " + state.name;
-    for (const JointState& joint : state.joints) check.joint(where, joint.joint);
+    for (const JointState& joint : state.joints) check_joint(where, joint.joint);
   }
   for (const EndEffector& effector : semantics.end_effectors) {
-    check.link("end effector " + effector.name, effector.parent_link);
+    check_link("end effector " + effector.name, effector.parent_link);
   }
   for (const DisabledPair& pair : semantics.disabled_pairs) {
-    check.link("disabled pair", pair.link_a);
-    check.link("disabled pair", pair.link_b);
+    check_link("disabled pair", pair.link_a);
+    check_link("disabled pair", pair.link_b);
   }
   for (const LinkSpheres& spheres : semantics.sphere_approximations) {
-    check.link("sphere approximation", spheres.link);
+    check_link("sphere approximation", spheres.link);
   }
   return unknown;
 }

@@ -79,7 +79,4 @@ class XmlFile {
   std::unique_ptr<tinyxml2::XMLDocument> document_;
 };
 
-// As text, or as the value of an attribute.
-std::string xml_escaped(std::string_view text);
-
 }  // namespace spherule::internal

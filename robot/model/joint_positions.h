@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The positions of the joints in a configuration, those that mimic others included.
+// The positions of the joints in a configuration, those that mimic others included, and which of
+// them are beyond their limits.
 //
 // @code{.cpp}
 // #include <spherule/robot/model/joint_positions.h>

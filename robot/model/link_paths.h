@@ -44,7 +44,7 @@ class LinkRelations {
 };
 
 // How far two bodies are at most from the axes of the joints between them, whatever these do. The
-// proof is in path_reach.cpp; what follows for motions, in collide/kernels/plan_vectors.h.
+// proof is in link_paths.cpp; what follows for motions, in collide/kernels/plan_vectors.h.
 class PathReach {
  public:
   struct Step {

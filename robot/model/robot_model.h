@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// A jointed mechanism, and the sphere trees on its links.
+// A jointed mechanism, the sphere trees on its links, and a robot as a file describes it.
 //
 // @code{.cpp}
 // #include <spherule/robot/model/robot_model.h>

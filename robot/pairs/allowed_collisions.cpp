@@ -8,6 +8,7 @@
 #include "robot/pairs/proof_scope.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -15,39 +16,23 @@ namespace spherule {
 namespace {
 
 AllowedReason reason_of(internal::Joined joined) {
-  switch (joined) {
-    case internal::Joined::kRigidly:
-      return AllowedReason::kRigid;
-    case internal::Joined::kByOneJoint:
-      return AllowedReason::kAdjacent;
-    case internal::Joined::kFurther:
-      break;
-  }
-  return AllowedReason::kTested;
+  constexpr std::array kReasons = {AllowedReason::kRigid, AllowedReason::kAdjacent,
+                                   AllowedReason::kTested};
+  return kReasons[static_cast<std::size_t>(joined)];
 }
 
 }  // namespace
 
 std::string_view name_of(AllowedReason reason) {
-  switch (reason) {
-    case AllowedReason::kRigid:
-      return "rigid";
-    case AllowedReason::kAdjacent:
-      return "adjacent";
-    case AllowedReason::kGiven:
-      return "given";
-    case AllowedReason::kNever:
-      return "never in the sample";
-    case AllowedReason::kAlways:
-      return "always in the sample";
-    case AllowedReason::kProvedNever:
-      return "proved never";
-    case AllowedReason::kFreeInBoxes:
-      return "free in boxes";
-    case AllowedReason::kTested:
-      break;
-  }
-  return "tested";
+  constexpr std::array<std::string_view, 8> kNames = {"tested",
+                                                      "rigid",
+                                                      "adjacent",
+                                                      "given",
+                                                      "never in the sample",
+                                                      "always in the sample",
+                                                      "proved never",
+                                                      "free in boxes"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 AllowedCollisions::AllowedCollisions(const RobotModel& robot)

@@ -153,8 +153,8 @@ class LinkPairs {
 // joints take all positions, but where a mimic follows one, boxes reach from -pi to pi, and the
 // pair is kUnknown even if all of that is free. Pairs with more than 16 joints between them or
 // positions beyond 100 stay kUnknown. Several bodies of a link count together. The trees of the
-// robot's links are not examined. The proof is in internal/pair_bound.h and
-// internal/pair_search.h. Throws Error for a body without or with both shapes, a link out of range,
+// robot's links are not examined. The proof is in pair_bound.h and
+// pair_search.h. Throws Error for a body without or with both shapes, a link out of range,
 // and options that are negative or not finite.
 LinkPairs prove_link_pairs(const RobotModel& robot, std::span<const LinkBody> bodies,
                            const LinkPairOptions& options = {});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/pairs/link_pieces.h"
 
+#include "base/error.h"
 #include "base/rounding.h"
 #include "collide/collide.h"
 #include "collide/solids/solid_within.h"
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -172,6 +174,22 @@ bool touches(std::span<const LinkBody> a, const Pose& world_from_a, std::span<co
   });
 }
 
+std::vector<std::vector<LinkBody>> bodies_by_link(const RobotModel& robot,
+                                                  std::span<const LinkBody> bodies) {
+  std::vector<std::vector<LinkBody>> result(robot.links().size());
+  for (const LinkBody& body : bodies) {
+    const auto link = static_cast<std::size_t>(body.link);
+    if (body.link < 0 || link >= result.size()) {
+      throw Error("body", "there is no link " + std::to_string(body.link));
+    }
+    if ((body.mesh == nullptr) == (body.spheres == nullptr)) {
+      throw Error("body of link " + robot.links()[link].name, "must be a mesh or spheres");
+    }
+    result[link].push_back(body);
+  }
+  return result;
+}
+
 LinkPieces make_link_pieces(std::span<const LinkBody> bodies) {
   LinkPieces result;
   result.bodies.assign(bodies.begin(), bodies.end());
@@ -200,8 +218,6 @@ bool touches(const LinkPieces& a, const Pose& world_from_a, const LinkPieces& b,
 }
 
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr std::size_t kFew = 200;
 // Each time that so many corners are kept the tolerance doubles, so that meshes that are very fine
@@ -267,8 +283,6 @@ HullCorners hull_corners(std::span<const Vector3d> points, double tolerance) {
 }
 
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr int kSteps = 24;
 

@@ -39,6 +39,10 @@ struct LinkPieces {
   std::vector<LinkBody> bodies;
 };
 
+// The bodies of each link. Throws Error for one without or with both shapes, and of no link.
+std::vector<std::vector<LinkBody>> bodies_by_link(const RobotModel& robot,
+                                                  std::span<const LinkBody> bodies);
+
 LinkPieces make_link_pieces(std::span<const LinkBody> bodies);
 
 // Whether any bodies of two links come within a clearance of each other, inside counted, under

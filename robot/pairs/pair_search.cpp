@@ -83,8 +83,6 @@ std::optional<PairSpace> make_pair_space(const RobotModel& robot, int first, int
 
 namespace {
 
-using Eigen::Vector3d;
-
 // A pair that touches at the middles of all of so many boxes is given up: links that always touch.
 constexpr std::size_t kAlwaysTouching = 1000;
 

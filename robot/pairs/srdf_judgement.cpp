@@ -20,37 +20,17 @@ bool is_decision(std::string_view reason) {
 }
 
 DisabledVerdict verdict_of(PairVerdict verdict) {
-  switch (verdict) {
-    case PairVerdict::kNever:
-      return DisabledVerdict::kNever;
-    case PairVerdict::kTouching:
-      return DisabledVerdict::kTouches;
-    case PairVerdict::kUnknown:
-      break;
-  }
-  return DisabledVerdict::kUnknown;
+  constexpr std::array kVerdicts = {DisabledVerdict::kNever, DisabledVerdict::kTouches,
+                                    DisabledVerdict::kUnknown};
+  return kVerdicts[static_cast<std::size_t>(verdict)];
 }
 
 }  // namespace
 
 std::string_view name_of(DisabledVerdict verdict) {
-  switch (verdict) {
-    case DisabledVerdict::kTouches:
-      return "touches";
-    case DisabledVerdict::kNever:
-      return "never";
-    case DisabledVerdict::kAdjacent:
-      return "adjacent";
-    case DisabledVerdict::kRigid:
-      return "rigid";
-    case DisabledVerdict::kNoBody:
-      return "no body";
-    case DisabledVerdict::kOtherRobot:
-      return "of another robot";
-    case DisabledVerdict::kUnknown:
-      break;
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 7> kNames = {
+      "touches", "unknown", "never", "adjacent", "rigid", "no body", "of another robot"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+// Cells of space: cubes that keep one thing each, and boxes that are halved.
+
 #include "base/rounding.h"
 
 #include <Eigen/Core>

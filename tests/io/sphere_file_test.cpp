@@ -219,7 +219,7 @@ TEST_F(SphereFiles, RefusesBadValues) {
   expect_refused(text_with(R"([{"radius":1}])"), "\"center\" is missing");
   expect_refused(text_with(R"([{"center":[0,0,0],"radius":1,"radius":2}])"), "appears twice");
   expect_refused(certificate("[0,1]", R"(1,"volume_ratio":"x")"), "volume_ratio");
-  expect_refused(with(R"("certificate":1)"), "certificate is not an object");
+  expect_refused(with(R"("certificate":1)"), "\"certificate\" is not an object");
   expect_refused(with(R"("certificate":{})"), "\"covered\" is missing");
   expect_refused(with(R"("certificate":{"covered":1,"uncovered_depth":[0,1],"sphere_count":1})"),
                  "covered");

@@ -5,7 +5,6 @@
 #include "io/mesh_io.h"
 #include "robot/cover/audit_robot.h"
 #include "robot/cover/link_parts.h"
-#include "robot/cover/primitive_mesh.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/files/urdf.h"
 #include "tests/robot/refusals.h"

@@ -158,7 +158,7 @@ TEST_F(SphereFormatFaults, Json) {
            {R"({"format": "other"})", "unknown format \"other\""},
            {"[]", "has only 0 levels"},
            {"[1]", "is not an object"},
-           {foam(R"("origin": [0, 0], "radius": 1)"), "sphere 0: is not [x, y, z]"},
+           {foam(R"("origin": [0, 0], "radius": 1)"), "sphere 0: \"origin\" is not [x, y, z]"},
            {foam(R"("origin": [0, 0, 0])"), "\"radius\" is missing"},
            {foam(R"("origin": [0, 0, 1e17], "radius": 1)"), "beyond 1e15"},
            {R"({"centers": [[0, 0, 0]], "radii": []})", "other counts"},
