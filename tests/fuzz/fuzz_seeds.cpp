@@ -18,6 +18,7 @@
 #include "tests/support/zoo.h"
 
 #include <cstdint>
+#include <map>
 
 namespace spherule::test {
 
@@ -38,42 +39,35 @@ std::string threemf_around(std::string_view model) {
 
 namespace {
 
+using Seeds = std::vector<std::string>;
+
 const std::vector<Sphere> kSpheres = {
     {{0, 0, 0}, 1.0}, {{1.5, -0.25, 1e-3}, 0.5}, {{-3, 2, 1}, 1e3}, {{0.1, 0.2, 0.3}, 0.0}};
 
-}  // namespace
+const TriangleMesh kSolid = cube_mesh();
+const std::string kModel = threemf_model(kSolid, "1 0 0 0 1 0 0 0 1 10 20 30");
 
-std::vector<std::string> sphere_file_seeds() {
-  SphereFile plain;
-  plain.spheres = kSpheres;
-  SphereFile certified = plain;
-  certified.certificate.emplace();
-  certified.certificate->sphere_count = kSpheres.size();
-  certified.options["max-error"] = 0.5;
-  return {internal::encode_spheres(plain, "plain"),
-          internal::encode_spheres(certified, "certified")};
+std::string tree_bytes() {
+  return internal::encode_tree(build_tree(kSpheres));
 }
 
-std::vector<std::string> tree_seeds() {
-  return {internal::encode_tree(build_tree(kSpheres))};
+Seeds joined(Seeds some, const Seeds& more) {
+  some.insert(some.end(), more.begin(), more.end());
+  return some;
 }
 
-std::vector<std::string> tree_content_seeds() {
-  return {without_checksum(internal::encode_tree(build_tree(kSpheres)))};
+// Four that are drawn at random.
+template <class Draw>
+Seeds drawn(std::uint64_t seed, Draw draw) {
+  Random random(seed);
+  Seeds seeds;
+  for (int i = 1; i <= 4; ++i) seeds.push_back(draw(random, i));
+  return seeds;
 }
 
-std::vector<std::string> zone_seeds() {
-  return {R"({"format":"spherule-zones","version":1,"zones":[
-    {"shape":"ball","center":[1,2,3],"radius":0.5,"max_error":0.1,"min_external":0.4},
-    {"shape":"box","min":[0,0,0],"max":[1,1,1],"max_error":0.2},
-    {"shape":"capsule","from":[0,0,0],"to":[1,0,0],"radius":0.1,"min_external":0.5}]})"};
-}
-
-namespace {
-
-const TriangleMesh& solid() {
-  static const TriangleMesh mesh = cube_mesh();
-  return mesh;
+Seeds ply_seeds() {
+  return {ply_bytes(kSolid, PlyForm::kText, true), ply_bytes(kSolid, PlyForm::kBigEndian, false),
+          ply_bytes(kSolid, PlyForm::kLittleEndian, true)};
 }
 
 // A strip of two triangles, one vertex moved by a sparse accessor, and two triangles in a fan.
@@ -92,34 +86,10 @@ std::string sparse_gltf() {
       "data:application/octet-stream;base64,AgAAAAAAgD8AAABAAABAQAABAgM="}]})";
 }
 
-}  // namespace
-
-std::vector<std::string> stl_seeds() {
-  return {binary_stl(solid()), text_stl(solid())};
-}
-
-std::vector<std::string> obj_seeds() {
-  return {obj_text(solid()), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1//1 2/1/1 3/2 -1\n"};
-}
-
-std::vector<std::string> ply_seeds() {
-  return {ply_bytes(solid(), PlyForm::kText, true), ply_bytes(solid(), PlyForm::kBigEndian, false),
-          ply_bytes(solid(), PlyForm::kLittleEndian, true)};
-}
-
-std::vector<std::string> off_seeds() {
-  return {off_text(solid())};
-}
-
-std::vector<std::string> threemf_seeds() {
-  const std::string model = threemf_model(solid(), "1 0 0 0 1 0 0 0 1 10 20 30");
-  return {threemf_bytes(model), threemf_bytes(model, Zip::kDeflated64)};
-}
-
-std::vector<std::string> threemf_model_seeds() {
-  const std::string model = threemf_model(solid(), "1 0 0 0 1 0 0 0 1 10 20 30");
+// Of objects within objects.
+std::string assembled_model() {
   const std::string end = "</resources>";
-  std::string assembled = model;
+  std::string assembled = kModel;
   assembled.replace(
       assembled.find(end), end.size(),
       R"(<object id="2" type="model"><metadatagroup><metadata name="n">v</metadata></metadatagroup>)"
@@ -129,36 +99,16 @@ std::vector<std::string> threemf_model_seeds() {
       R"(<component objectid="2"/></components></object></resources>)");
   const std::string item = R"(<build><item objectid="3"/>)";
   assembled.replace(assembled.find("<build>"), std::string("<build>").size(), item);
-  return {model, assembled};
+  return assembled;
 }
-
-std::vector<std::string> dae_seeds() {
-  Random random(1);
-  std::vector<std::string> seeds = {dae_text(solid(), Eigen::Matrix4d::Identity())};
-  for (int i = 0; i < 4; ++i) seeds.push_back(random_dae(solid(), random));
-  return seeds;
-}
-
-std::vector<std::string> gltf_seeds() {
-  Random random(2);
-  std::vector<std::string> seeds = {gltf_text(solid(), {1, 2, 3}), sparse_gltf()};
-  for (int i = 0; i < 4; ++i) seeds.push_back(random_gltf(solid(), random));
-  return seeds;
-}
-
-std::vector<std::string> glb_seeds() {
-  return {glb_bytes(solid(), {1, 2, 3})};
-}
-
-namespace {
 
 // What is written of random spheres.
-std::vector<std::string> written(std::vector<SphereFormat> formats) {
+Seeds written(std::vector<SphereFormat> formats) {
   Random random(3);
   const RobotSpheres spheres = random_spheres(random, 3);
   const TempDir folder;
   const auto urdf = folder.write("robot.urdf", urdf_text(spheres.links));
-  std::vector<std::string> seeds;
+  Seeds seeds;
   for (const SphereFormat format : formats) {
     const auto file = folder.path() / "seed";
     write_robot_spheres(spheres, format, {.urdf = urdf}, file);
@@ -167,10 +117,63 @@ std::vector<std::string> written(std::vector<SphereFormat> formats) {
   return seeds;
 }
 
-}  // namespace
+// A robot with a link that is named as one of spheres.
+std::string urdf_with_joints() {
+  std::string text = urdf_text(spheres_to_keep().links);
+  const std::string joints = R"(<joint name="j" type="fixed"><parent link="base"/>
+    <child link="arm"/></joint><joint name="k" type="fixed"><parent link="arm"/>
+    <child link="hand"/></joint><link name="base_sphere1"><collision><geometry>
+    <sphere radius="1"/></geometry></collision></link><joint name="l" type="fixed">
+    <parent link="base"/><child link="base_sphere1"/><origin xyz="1 0 0"/></joint></robot>)";
+  text.replace(text.find("</robot>"), text.size(), joints);
+  return text;
+}
 
-std::vector<std::string> scene_seeds() {
-  return {R"({"format": "spherule-scene", "version": 1,
+std::string sphere_text(bool certified) {
+  SphereFile file;
+  file.spheres = kSpheres;
+  if (certified) {
+    file.certificate.emplace();
+    file.certificate->sphere_count = kSpheres.size();
+    file.options["max-error"] = 0.5;
+  }
+  return internal::encode_spheres(file, "seed");
+}
+
+std::string pair_bytes() {
+  BoxRobot robot{RobotModel("post")};
+  robot.model.add_link("bar", "post",
+                       {.name = "turn", .type = JointType::kRevolute, .lower = -2, .upper = 2});
+  robot.add_boxes(0, {{Eigen::Vector3d(0.9, -0.1, -0.1), Eigen::Vector3d(1.1, 0.1, 0.1)}});
+  robot.add_boxes(1, {{Eigen::Vector3d(0.0, -0.02, -0.05), Eigen::Vector3d(2.0, 0.02, 0.05)}});
+  return internal::encode_link_pairs(prove_link_pairs(robot.model, robot.bodies, {.boxes = 20}));
+}
+
+// Of formats of others: the styles that their published files have. In into_*, links are those of
+// spheres_to_keep(), and others.
+const std::map<std::string_view, Seeds>& all_seeds() {
+  static const std::map<std::string_view, Seeds> kSeeds = {
+      {"stl", {binary_stl(kSolid), text_stl(kSolid)}},
+      {"obj", {obj_text(kSolid), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1//1 2/1/1 3/2 -1\n"}},
+      {"ply", ply_seeds()},
+      {"points_ply", ply_seeds()},
+      {"off", {off_text(kSolid)}},
+      {"3mf", {threemf_bytes(kModel), threemf_bytes(kModel, Zip::kDeflated64)}},
+      {"3mf_model", {kModel, assembled_model()}},
+      {"dae", joined({dae_text(kSolid, Eigen::Matrix4d::Identity())},
+                     drawn(1, [](Random& random, int) { return random_dae(kSolid, random); }))},
+      {"gltf", joined({gltf_text(kSolid, {1, 2, 3}), sparse_gltf()},
+                      drawn(2, [](Random& random, int) { return random_gltf(kSolid, random); }))},
+      {"glb", {glb_bytes(kSolid, {1, 2, 3})}},
+      {"spheres", {sphere_text(false), sphere_text(true)}},
+      {"tree", {tree_bytes()}},
+      {"tree_content", {without_checksum(tree_bytes())}},
+      {"zones", {R"({"format":"spherule-zones","version":1,"zones":[
+    {"shape":"ball","center":[1,2,3],"radius":0.5,"max_error":0.1,"min_external":0.4},
+    {"shape":"box","min":[0,0,0],"max":[1,1,1],"max_error":0.2},
+    {"shape":"capsule","from":[0,0,0],"to":[1,0,0],"radius":0.1,"min_external":0.5}]})"}},
+      {"scene",
+       {R"({"format": "spherule-scene", "version": 1,
     "robot": {"pose": {"position": [0, 0, 0.5]}, "srdf": "arm.srdf"},
     "obstacles": [{"name": "floor", "half_space": {}},
       {"name": "table", "box": {"size": [1.2, 0.8, 0.05]}, "pose": {"position": [0.7, 0, 0.4]}},
@@ -181,7 +184,7 @@ std::vector<std::string> scene_seeds() {
     "regions": [{"body": "torch", "name": "tip", "ball": {"center": [0, 0, 0.31], "radius": 0.01}}],
     "allowed_contacts": [{"body": "torch", "region": "tip", "other": "part"}],
     "padding": [{"body": "torch", "distance": 0.002}]})",
-          R"({"format": "spherule-scene", "version": 1, "robot": {"pose": {"rpy": [0, 0, 1.5]}},
+        R"({"format": "spherule-scene", "version": 1, "robot": {"pose": {"rpy": [0, 0, 1.5]}},
     "obstacles": [{"name": "a", "ball": {"radius": 1},
                    "pose": {"position": [0, 0, 1], "quaternion": [0, 0, 0, 2]}},
       {"name": "b", "cylinder": {"radius": 1, "length": 2}, "pose": {"rpy": [1, 0, 0]}},
@@ -192,34 +195,19 @@ std::vector<std::string> scene_seeds() {
     "attached": [{"name": "hand", "link": "tool0", "spheres": {"file": "hand.json"}},
       {"name": "tool", "link": "hand", "tree": {"file": "t.tree"}, "pose": {"position": [1, 0, 0]}}],
     "allowed_contacts": [{"body": "hand", "other": "a"}],
-    "padding": [{"body": "hand", "distance": 0.01, "other": "b"}]})"};
-}
-
-std::vector<std::string> trajectory_seeds() {
-  return {"0.1, 0.2\n0.2; 0.3\n# end\n-1e-3 2\n", "time,turn,slider\n0,90,0.5\n1,-45,0.25\n"};
-}
-
-std::vector<std::string> point_seeds() {
-  return {"0 0 0\n1, 2, 3\n4;5;6 255 0 0\n# end\n-1e-3 2 1e5\n"};
-}
-
-std::vector<std::string> urdf_seeds() {
-  Random random(4);
-  std::vector<std::string> seeds;
-  for (int joints = 1; joints <= 4; ++joints) seeds.push_back(random_urdf(random, joints));
-  seeds.emplace_back(R"(<robot name="arm" version="1.0"><material name="m"/>
+    "padding": [{"body": "hand", "distance": 0.01, "other": "b"}]})"}},
+      {"trajectory",
+       {"0.1, 0.2\n0.2; 0.3\n# end\n-1e-3 2\n", "time,turn,slider\n0,90,0.5\n1,-45,0.25\n"}},
+      {"points", {"0 0 0\n1, 2, 3\n4;5;6 255 0 0\n# end\n-1e-3 2 1e5\n"}},
+      {"urdf",
+       joined(drawn(4, random_urdf), {R"(<robot name="arm" version="1.0"><material name="m"/>
     <link name="base"><visual name="v"><geometry>
         <mesh filename="package://arm/meshes/base.dae" scale="1 -1 1e-3"/></geometry></visual>
       <collision><geometry><mesh filename="../base.stl"/></geometry></collision>
       <collision><geometry><mesh filename="file:///base.stl"/></geometry></collision></link>
     <link name="hand"/><joint name="j" type="revolute"><parent link="base"/><child link="hand"/>
-      <axis xyz="0 0 1"/><limit lower="-1" upper="1"/><safety_controller/></joint></robot>)");
-  return seeds;
-}
-
-std::vector<std::string> srdf_seeds() {
-  std::vector<std::string> seeds = written({SphereFormat::kSrdf});
-  seeds.emplace_back(R"(<?xml version="1.0"?><robot name="arm">
+      <axis xyz="0 0 1"/><limit lower="-1" upper="1"/><safety_controller/></joint></robot>)"})},
+      {"srdf", joined(written({SphereFormat::kSrdf}), {R"(<?xml version="1.0"?><robot name="arm">
     <group name="both"><group name="left"/><joint name="j2"/></group>
     <group name="left"><chain base_link="base" tip_link="l1"/><link name="l2"/></group>
     <group_state name="home" group="left"><joint name="j1" value="0.5"/></group_state>
@@ -228,55 +216,21 @@ std::vector<std::string> srdf_seeds() {
     <end_effector name="tool" parent_link="l2" group="left" parent_group="both"/>
     <link_sphere_approximation link="l2"><sphere center="0 0 0" radius="0"/>
     </link_sphere_approximation>
-    <disable_collisions link1="l1" link2="l2" reason="Never"/></robot>)");
-  return seeds;
-}
-
-std::vector<std::string> pair_content_seeds() {
-  return {without_checksum(pair_seeds().front())};
-}
-
-std::vector<std::string> pair_seeds() {
-  BoxRobot robot{RobotModel("post")};
-  robot.model.add_link("bar", "post",
-                       {.name = "turn", .type = JointType::kRevolute, .lower = -2, .upper = 2});
-  robot.add_boxes(0, {{Eigen::Vector3d(0.9, -0.1, -0.1), Eigen::Vector3d(1.1, 0.1, 0.1)}});
-  robot.add_boxes(1, {{Eigen::Vector3d(0.0, -0.02, -0.05), Eigen::Vector3d(2.0, 0.02, 0.05)}});
-  return {internal::encode_link_pairs(prove_link_pairs(robot.model, robot.bodies, {.boxes = 20}))};
-}
-
-std::vector<std::string> sphere_xml_seeds() {
-  return written({SphereFormat::kUrdf, SphereFormat::kSrdf});
-}
-
-std::vector<std::string> sphere_yaml_seeds() {
-  std::vector<std::string> seeds = written({SphereFormat::kCurobo, SphereFormat::kXrdf});
-  seeds.emplace_back("s: &s\n  - {center: [0, 0, 0], radius: 1}\ncollision_spheres:\n  a: *s\n");
-  return seeds;
-}
-
-std::vector<std::string> sphere_json_seeds() {
-  std::vector<std::string> seeds = written({SphereFormat::kFoam, SphereFormat::kSpherule});
-  seeds.emplace_back(R"({"link": {"centers": [[0, 0, 0], [1, 2, 3]], "radii": [1, 0.5]}})");
-  seeds.emplace_back(R"({"centers": [[0, 0, 0], [1, 2, 3]], "radii": [1, 0.5]})");
-  seeds.emplace_back(
-      R"({"a": {"BiggesetSphere": [0, 0, 0, 2], "SubSpheres": {"s1": [0, 0, 0, 1]}}})");
-  return seeds;
-}
-
-std::vector<std::string> bradshaw_seeds() {
-  return {"2 3\n0 0 0 9 1\n1 -2 3 0.5 1\n0 0 0 -1 0\n4 5 -6 0.75 1\n"};
-}
-
-}  // namespace spherule::test
-
-// The styles that the published files of each format have. Links are those of spheres_to_keep(),
-// and others.
-
-namespace spherule::test {
-
-std::vector<std::string> into_yaml_seeds() {
-  return {R"(# notice
+    <disable_collisions link1="l1" link2="l2" reason="Never"/></robot>)"})},
+      {"pairs", {pair_bytes()}},
+      {"pairs_content", {without_checksum(pair_bytes())}},
+      {"spheres_xml", written({SphereFormat::kUrdf, SphereFormat::kSrdf})},
+      {"spheres_yaml",
+       joined(written({SphereFormat::kCurobo, SphereFormat::kXrdf}),
+              {"s: &s\n  - {center: [0, 0, 0], radius: 1}\ncollision_spheres:\n  a: *s\n"})},
+      {"spheres_json",
+       joined(written({SphereFormat::kFoam, SphereFormat::kSpherule}),
+              {R"({"link": {"centers": [[0, 0, 0], [1, 2, 3]], "radii": [1, 0.5]}})",
+               R"({"centers": [[0, 0, 0], [1, 2, 3]], "radii": [1, 0.5]})",
+               R"({"a": {"BiggesetSphere": [0, 0, 0, 2], "SubSpheres": {"s1": [0, 0, 0, 1]}}})"})},
+      {"spheres_sph", {"2 3\n0 0 0 9 1\n1 -2 3 0.5 1\n0 0 0 -1 0\n4 5 -6 0.75 1\n"}},
+      {"into_yaml",
+       {R"(# notice
 robot_cfg:
   kinematics:
     urdf_path: "robot/arm.urdf"  # relative
@@ -296,7 +250,7 @@ robot_cfg:
       }
     lock_joints: {"a": 0.04, 'b': !!float 4e-2}
 )",
-          R"(robot_cfg:
+        R"(robot_cfg:
   kinematics:
     collision_link_names:
     - base
@@ -314,12 +268,12 @@ robot_cfg:
         radius: 9.0
   # end
 )",
-          "kinematics:\n  k: &k {a: 1}\n  b: *k\n  collision_spheres: {base: []}\n"
-          "  self_collision_ignore: {other: &l [x], base: *l}\n",
-          "collision_spheres:\n  base: []\n",
-          "format: xrdf\nformat_version: 1.0\ncollision:\n  geometry: auto\n"
-          "geometry:\n  auto:\n    spheres:\n  fine: {}\nself_collision:\n  geometry: auto\n",
-          R"(format: "xrdf"
+        "kinematics:\n  k: &k {a: 1}\n  b: *k\n  collision_spheres: {base: []}\n"
+        "  self_collision_ignore: {other: &l [x], base: *l}\n",
+        "collision_spheres:\n  base: []\n",
+        "format: xrdf\nformat_version: 1.0\ncollision:\n  geometry: auto\n"
+        "geometry:\n  auto:\n    spheres:\n  fine: {}\nself_collision:\n  geometry: auto\n",
+        R"(format: "xrdf"
 format_version: 1.0
 
 modifiers:
@@ -343,11 +297,9 @@ geometry:
       - center: [0.0, 0.0, 0.1]
         radius: 0.07
   rest: {}
-)"};
-}
-
-std::vector<std::string> into_srdf_seeds() {
-  return {R"(<?xml version='1.0' ?>
+)"}},
+      {"into_srdf",
+       {R"(<?xml version='1.0' ?>
 <!-- <robot> > -->
 <robot   name='arm'
          xmlns:x = "y">
@@ -360,20 +312,17 @@ std::vector<std::string> into_srdf_seeds() {
   <property name="a>b" value='"/>'/>
 </robot> <!-- end -->
 )",
-          R"(<robot name="arm"/>)",
-          "<robot name=\"arm\">\r\n<disable_collisions link1=\"arm\" link2=\"base\"/>"
-          "<![CDATA[<a>]]><group name=\"g\"/>\r\n</robot>"};
+        R"(<robot name="arm"/>)",
+        "<robot name=\"arm\">\r\n<disable_collisions link1=\"arm\" link2=\"base\"/>"
+        "<![CDATA[<a>]]><group name=\"g\"/>\r\n</robot>"}},
+      {"into_urdf", {urdf_with_joints(), urdf_text(spheres_to_keep().links)}}};
+  return kSeeds;
 }
 
-std::vector<std::string> into_urdf_seeds() {
-  std::string text = urdf_text(spheres_to_keep().links);
-  const std::string joints = R"(<joint name="j" type="fixed"><parent link="base"/>
-    <child link="arm"/></joint><joint name="k" type="fixed"><parent link="arm"/>
-    <child link="hand"/></joint><link name="base_sphere1"><collision><geometry>
-    <sphere radius="1"/></geometry></collision></link><joint name="l" type="fixed">
-    <parent link="base"/><child link="base_sphere1"/><origin xyz="1 0 0"/></joint></robot>)";
-  text.replace(text.find("</robot>"), text.size(), joints);
-  return {text, urdf_text(spheres_to_keep().links)};
+}  // namespace
+
+std::vector<std::string> FuzzTarget::seeds() const {
+  return all_seeds().at(name);
 }
 
 }  // namespace spherule::test

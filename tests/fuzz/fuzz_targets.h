@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Small valid inputs of each target, made anew in every run (seeded).
-
 #include "robot/formats/sphere_formats.h"
 
 #include <filesystem>
@@ -13,45 +11,9 @@
 
 namespace spherule::test {
 
-std::vector<std::string> stl_seeds();
-std::vector<std::string> obj_seeds();
-std::vector<std::string> ply_seeds();
-std::vector<std::string> off_seeds();
-std::vector<std::string> threemf_seeds();
-std::vector<std::string> threemf_model_seeds();
-std::vector<std::string> dae_seeds();
-std::vector<std::string> gltf_seeds();
-std::vector<std::string> glb_seeds();
-
-std::vector<std::string> sphere_file_seeds();
-std::vector<std::string> tree_seeds();
-std::vector<std::string> tree_content_seeds();
-std::vector<std::string> zone_seeds();
-
-std::vector<std::string> scene_seeds();
-std::vector<std::string> trajectory_seeds();
-std::vector<std::string> point_seeds();
-std::vector<std::string> urdf_seeds();
-std::vector<std::string> srdf_seeds();
-std::vector<std::string> pair_seeds();
-std::vector<std::string> pair_content_seeds();
-std::vector<std::string> sphere_xml_seeds();
-std::vector<std::string> sphere_yaml_seeds();
-std::vector<std::string> sphere_json_seeds();
-std::vector<std::string> bradshaw_seeds();
-
-// Files of the user that spheres are written into.
-std::vector<std::string> into_yaml_seeds();
-std::vector<std::string> into_srdf_seeds();
-std::vector<std::string> into_urdf_seeds();
-
-}  // namespace spherule::test
-
 // Files of the user into which the spheres of a robot are written, as `read` of FuzzTarget: where
 // the file could be read before, the result reads back to these spheres; YAML and SRDF (without
 // carriage returns alone) do not change when they are written into once more.
-
-namespace spherule::test {
 
 // What is written: the links base and arm with spheres, hand without, and three pairs.
 const RobotSpheres& spheres_to_keep();
@@ -60,12 +22,8 @@ void write_into_yaml(const std::filesystem::path& file);  // cuRobo's and XRDF
 void write_into_srdf(const std::filesystem::path& file);
 void write_into_urdf(const std::filesystem::path& file);
 
-}  // namespace spherule::test
-
 // Files around a content that is mutated, with checksums that are right: hardly any mutant of a
 // whole file comes past a checksum.
-
-namespace spherule::test {
 
 // The bytes, and the checksum with which sphere trees and link pairs end.
 std::string with_checksum(std::string_view content);
@@ -83,13 +41,13 @@ struct FuzzTarget {
   // was read, and where it was refused with an Error about this file or the robot in it; throws
   // std::logic_error where what was read is not sound, and what else a reader throws.
   void (*read)(const std::filesystem::path& file);
-  // Valid inputs from which mutation starts.
-  std::vector<std::string> (*seeds)();
   // A dictionary for libFuzzer in tests/fuzz/dictionaries/; empty: none.
   std::string_view dictionary;
   // Makes the file of an input that is only its content. Null: the input is the file.
   std::string (*file_around)(std::string_view content) = nullptr;
 
+  // Small valid inputs from which mutation starts, made anew in every run (seeded).
+  std::vector<std::string> seeds() const;
   std::string file_of(std::string_view input) const {
     return file_around ? file_around(input) : std::string(input);
   }

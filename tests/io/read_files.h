@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,20 +22,28 @@ class ReadFiles : public ::testing::Test {
   TriangleMesh read(const std::string& extension, std::string_view bytes) {
     return read_mesh(dir_.write("part." + extension, bytes));
   }
-  // The message of the error that reading throws.
-  std::string error(const std::string& extension, std::string_view bytes) {
+  // The message of the error that reading throws; of a file, its subject is the file.
+  std::string error(const std::filesystem::path& file, double scale = 1.0) {
     try {
-      read(extension, bytes);
+      read_mesh(file, {.scale = scale});
     } catch (const Error& e) {
+      EXPECT_TRUE(e.subject() == file.string() || e.subject() == "scale") << e.subject();
       return e.what();
     }
     return "";
   }
-  ::testing::AssertionResult refused(const std::string& extension, std::string_view bytes,
-                                     const std::string& why) {
-    const std::string message = error(extension, bytes);
+  std::string error(const std::string& extension, std::string_view bytes) {
+    return error(dir_.write("part." + extension, bytes));
+  }
+  ::testing::AssertionResult refused(const std::filesystem::path& file, const std::string& why,
+                                     double scale = 1.0) {
+    const std::string message = error(file, scale);
     if (message.find(why) != std::string::npos) return ::testing::AssertionSuccess();
     return ::testing::AssertionFailure() << "'" << message << "' lacks '" << why << "'";
+  }
+  ::testing::AssertionResult refused(const std::string& extension, std::string_view bytes,
+                                     const std::string& why) {
+    return refused(dir_.write("part." + extension, bytes), why);
   }
 
   // Files that differ from a good one by a replacement, and a part of what is said of each.
@@ -41,9 +51,11 @@ class ReadFiles : public ::testing::Test {
     std::string from, to, why;
   };
   void expect_refused(const std::string& extension, const std::string& good,
-                      const std::vector<Refusal>& refusals) {
+                      const std::vector<Refusal>& refusals,
+                      const std::function<std::string(const std::string&)>& file_of = {}) {
     for (const auto& [from, to, why] : refusals) {
-      EXPECT_TRUE(refused(extension, replaced(good, from, to), why)) << from << " -> " << to;
+      const std::string text = replaced(good, from, to);
+      EXPECT_TRUE(refused(extension, file_of ? file_of(text) : text, why)) << from << " -> " << to;
     }
   }
   // The text with its first `from`, which has to be there, replaced.

@@ -122,18 +122,6 @@ class CoverByMethod : public testing::TestWithParam<CoverMethod> {
   CoverOptions options() const { return options_for(GetParam()); }
 };
 
-TEST_P(CoverByMethod, IsEqualInEveryRunOnAnyNumberOfThreads) {
-  for (const char* name : effort(std::vector{"l-bracket", "soup"}, 1)) {
-    const TriangleMesh mesh = mesh_named(name);
-    CoverOptions options = this->options();
-    const Spheres first = fit(mesh, options).cover.spheres;
-    for (const int threads : {0, 1, 2}) {
-      options.threads = threads;
-      EXPECT_EQ(fit(mesh, options).cover.spheres, first);
-    }
-  }
-}
-
 TEST_P(CoverByMethod, WithPaddingTheGrownMeshIsCovered) {
   const std::vector<std::pair<const char*, double>> cases = {
       {"three-fins", 3.0}, {"open-box", 0.1}, {"cube", 0.9},
@@ -190,42 +178,6 @@ TEST_P(CoverByMethod, NoSphereStandsWhereExternalSpheresOnlyJustCloseTheSolid) {
     for (const Sphere& s : fitted.cover.spheres) EXPECT_GT(s.center.z(), 1.0);
     expect_nothing_beyond_the_error(mesh, fitted);
   }
-}
-
-TEST_P(CoverByMethod, OptionsOfOtherMethodsHaveNoEffect) {
-  const TriangleMesh mesh = mesh_named("l-bracket");
-  CoverOptions others = options();
-  FitShares shares;  // with the effort
-  if (others.method == CoverMethod::kCover) {
-    others.min_internal_diameter = 0.01;
-    others.history = true;
-  } else {
-    shares.effort += 1;
-    others.seconds = 1e-9;
-    others.lower_bound = true;
-    others.on_proved = [](std::size_t) { FAIL(); };
-  }
-  const SphereCover found = fit(mesh, others, shares).cover;
-  EXPECT_EQ(found.spheres, fit(mesh, options()).cover.spheres);
-  EXPECT_TRUE(found.history.empty());
-  EXPECT_EQ(found.lower_bound, 0U);
-}
-
-TEST_P(CoverByMethod, BadOptionsAreRefusedByName) {
-  const ExternalSpheres external = externals_of(cube_mesh(), {});
-  const auto refused_with = [&](double CoverOptions::*field, double value) {
-    CoverOptions options = this->options();
-    options.max_error = 0.3;
-    options.*field = value;
-    return refused([&] { cover(cube_mesh(), external, options); });
-  };
-  for (const double bad : {-1.0, kNan, kInfinity, 1e300}) {
-    EXPECT_EQ(refused_with(&CoverOptions::max_error, bad), "max error");
-    EXPECT_EQ(refused_with(&CoverOptions::min_radius, bad), "min radius");
-    EXPECT_EQ(refused_with(&CoverOptions::min_internal_diameter, bad), "min internal diameter");
-  }
-  EXPECT_EQ(refused_with(&CoverOptions::max_error, 0.0), "max error");
-  EXPECT_EQ(refused_with(&CoverOptions::max_error, 0.3), "accepted");
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, CoverByMethod,
@@ -302,36 +254,6 @@ TEST(OctreeProof, WhatExternalSpheresTakeNeedNotBeCovered) {
   EXPECT_NE(verdict(cube, {{{0.5, 0, 0.5}, 0.4}}), OctreeVerdict::kCovered);
 }
 
-// Both proofs are one-sided: neither is content with a set that the other finds a leak in.
-TEST(OctreeProof, AgreesWithTheCertificateOnSpoiltCovers) {
-  Random random(111);
-  int leaks = 0;
-  int covers = 0;
-  for (const NamedMesh& named : zoo_to_fit()) {
-    SCOPED_TRACE(named.name);
-    const Fit fitted = fit(named.mesh, {.method = CoverMethod::kPaper});
-    for (int round = 0; round < effort(4, 2); ++round) {
-      const double share = std::pow(10.0, -1.0 - round);
-      Spheres spheres = fitted.cover.spheres;
-      for (Sphere& s : spheres) s.radius -= random.between(0.0, share) * fitted.max_error;
-      const Certificate certificate = certificate_of(named.mesh, fitted, spheres);
-      const OctreeProof proof = prove_by_octree(fitted.external, spheres, 20, 60'000);
-      if (proof.verdict == OctreeVerdict::kLeak) {
-        ++leaks;
-        ASSERT_FALSE(certificate.covered);
-        ASSERT_TRUE(is_in_solid(proof.point, fitted.external));
-        ASSERT_GT(gap_to_spheres(proof.point, spheres), 0.0L);
-      }
-      if (proof.verdict == OctreeVerdict::kCovered) {
-        ++covers;
-        ASSERT_EQ(certificate.solid_depth.lower, 0.0);
-      }
-    }
-  }
-  EXPECT_GE(leaks, effort(10, 2));
-  EXPECT_GE(covers, effort(10, 2));
-}
-
 // --- the paper's loop ---
 
 Fit paper_fit(const TriangleMesh& mesh, const FitShares& shares = {}) {
@@ -398,35 +320,11 @@ TEST(InternalSpheres, TheHistoryTellsOfBothErrorsBeforeAndAfter) {
   EXPECT_TRUE(without.history.empty());
 }
 
-// What cannot be placed as seeded is moved; the loop comes to its end however many seeds that are.
-TEST(InternalSpheres, SeedsThatCollideDoNotStallTheLoop) {
-  CoverOptions options = options_for(CoverMethod::kPaper);
-  for (const double share : {0.0, 0.1, 1.0, 8.0}) {
-    options.min_internal_diameter = share * 0.07 * std::sqrt(3.0);
-    const Fit fitted = fit(cube_mesh(), options);
-    EXPECT_TRUE(certificate_of(cube_mesh(), fitted, fitted.cover.spheres).covered);
-    EXPECT_LE(fitted.cover.seeds_rejected, fitted.cover.spheres.size());
-    // The corners of the cube: a sphere of the size of the cube fits into none.
-    EXPECT_GE(fitted.cover.seeds_rejected, share == 8.0 ? 8U : 0U);
-  }
-}
-
 TEST(InternalSpheres, AnErrorBelowTheRoundingOfTheCoordinatesIsRefused) {
   const TriangleMesh mesh = box_mesh(Vector3d::Constant(1e9), Vector3d::Constant(1e9 + 1.0));
   CoverOptions options = options_for(CoverMethod::kPaper);
   options.max_error = 1e-4;
   EXPECT_NE(refused([&] { cover(mesh, box_of(mesh), options); }), "accepted");
-}
-
-TEST(InternalSpheres, ASmallerErrorAsksForMoreSpheres) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  std::size_t last = 0;
-  for (const double error : {0.12, 0.08, 0.05}) {
-    // D stays.
-    const Fit fitted = paper_fit(icosphere(2), {.max_error = error, .diameter = 0.5 / error});
-    EXPECT_GE(fitted.cover.spheres.size(), last);
-    last = fitted.cover.spheres.size();
-  }
 }
 
 // --- what the spheres of a cover are there for ---
@@ -511,14 +409,6 @@ TEST(SpheresInThinParts, AreThoseWhoseCentresAreNearTheOutside) {
     EXPECT_EQ(spheres_in_thin_parts(fitted.external, spheres, fitted.max_error), thin);
     EXPECT_TRUE(is_plate ? thin == spheres.size() : thin < spheres.size() / 2) << thin;
   }
-}
-
-TEST(CoverBreakdown, RefusesErrorsOutOfRange) {
-  const ExternalSpheres external = externals_of(cube_mesh(), {});
-  for (const double bad : {0.0, -1.0, kNan, 1e300}) {
-    EXPECT_THROW(cover_breakdown(cube_mesh(), external, {}, bad), Error) << bad;
-  }
-  EXPECT_THROW(spheres_in_thin_parts({}, {}, 0.0), Error);
 }
 
 }  // namespace

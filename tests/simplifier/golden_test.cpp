@@ -2,6 +2,7 @@
 // G7 (docs/guarantee.md): equal input gives equal bits on every machine, compiler and optimisation
 // level. If a stage is changed on purpose, put the value that the failing test prints here and say
 // so in CHANGELOG.md: spheres fitted before will differ from spheres fitted after.
+#include "simplifier/repair.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/support/effort.h"
 #include "tests/support/zoo.h"
@@ -9,6 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace spherule::test {
 namespace {
@@ -51,6 +55,38 @@ TEST(Golden, ExternalSpheresAndTheSpheresOfBothMethods) {
     EXPECT_EQ(external, golden.external) << "external: 0x" << std::hex << external;
     EXPECT_EQ(paper, golden.paper) << "paper: 0x" << std::hex << paper;
     EXPECT_EQ(covering, golden.cover) << "cover: 0x" << std::hex << covering;
+  }
+}
+
+TEST(Golden, NoStageDependsOnTheNumberOfThreads) {
+  const TriangleMesh mesh = l_bracket();
+  const double size = diagonal_of(mesh);
+  const auto all_of = [&](ExternalPlacement placement, CoverMethod method, int threads) {
+    const Simplification made = simplify(mesh, {.max_error = 0.1 * size,
+                                                .levels = {0.1 * size, 0.2 * size},
+                                                .min_external_diameter = 0.4 * size,
+                                                .method = method,
+                                                .external = placement,
+                                                .external_limit = 3000,
+                                                .effort = effort(3, 1),
+                                                .threads = threads});
+    const CoverLevel& level = made.levels.at(0);
+    std::vector<Sphere> leaking = made.cover.spheres;
+    leaking.pop_back();
+    for (Sphere& sphere : leaking) sphere.radius *= 0.98;
+    const RepairOptions with{.max_error = 0.1 * size, .effort = 2, .threads = threads};
+    const CoverOptions bounded{.max_error = 0.25 * size, .lower_bound = true, .threads = threads};
+    return std::tuple(made.external.spheres, made.cover.spheres, level.spheres.spheres,
+                      level.spheres.parent_of, level.protrusion,
+                      repair(mesh, made.external, leaking, with).spheres,
+                      cover(mesh, box_of(mesh), bounded).lower_bound);
+  };
+  for (const auto& [placement, method] :
+       effort(std::vector{std::pair{ExternalPlacement::kReachable, CoverMethod::kCover},
+                          {ExternalPlacement::kRandom, CoverMethod::kPaper}},
+              1)) {
+    const auto first = all_of(placement, method, 1);
+    for (const int threads : {2, 0}) EXPECT_TRUE(all_of(placement, method, threads) == first);
   }
 }
 

@@ -121,6 +121,24 @@ bool is_in_solid(const Vector3d& p, const ExternalSpheres& external) {
                               [&](const Sphere& s) { return is_in_open_sphere(p, s); });
 }
 
+Real zone_distance(const ZoneShape& shape, const Vector3d& at) {
+  const Vector3l p = at.cast<Real>();
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return std::max(0.0L, (p - sphere->center.cast<Real>()).norm() - sphere->radius);
+  }
+  if (const auto* box = std::get_if<Eigen::AlignedBox3d>(&shape)) {
+    const Vector3l inside =
+        p.cwiseMax(box->min().cast<Real>()).cwiseMin(box->max().cast<Real>()).eval();
+    return (p - inside).norm();
+  }
+  const auto& capsule = std::get<ZoneCapsule>(shape);
+  const Vector3l from = capsule.from.cast<Real>();
+  const Vector3l way = capsule.to.cast<Real>() - from;
+  const Real length = way.squaredNorm();
+  const Real t = length > 0.0L ? std::clamp((p - from).dot(way) / length, 0.0L, 1.0L) : 0.0L;
+  return std::max(0.0L, (p - from - t * way).norm() - capsule.radius);
+}
+
 std::vector<Vector3d> points_on_surface(const TriangleMesh& mesh, std::size_t count,
                                         Random& random) {
   std::vector<double> areas;

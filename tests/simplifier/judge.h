@@ -8,6 +8,7 @@
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
+#include "simplifier/types/zones.h"
 #include "tests/support/random.h"
 
 #include <Eigen/Geometry>
@@ -30,6 +31,9 @@ Real judged_mesh_distance(const Eigen::Vector3d& p, const TriangleMesh& mesh);
 
 // Whether p is in S as its definition has it: in the closed box and in no open external sphere.
 bool is_in_solid(const Eigen::Vector3d& p, const ExternalSpheres& external);
+
+// Of the closed shape; 0 within.
+Real zone_distance(const ZoneShape& shape, const Eigen::Vector3d& at);
 
 // Corners, points on edges and points inside of every triangle; more on large ones, about `count`.
 std::vector<Eigen::Vector3d> points_on_surface(const TriangleMesh& mesh, std::size_t count,

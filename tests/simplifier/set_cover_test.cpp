@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Set cover: the greedy algorithm against its definition and against every subset, and the searches
-// from there.
+// Set cover: the greedy algorithm against its definition, and the searches from there.
 #include "simplifier/simplify.h"
 #include "simplifier/stage2/search/cover_search.h"
 #include "tests/support/random.h"
@@ -9,7 +8,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +24,6 @@ using internal::CoverSearch;
 using internal::greedy_set_cover;
 using internal::LazyCoverSearch;
 using internal::SetCoverInstance;
-using internal::Tournament;
 
 using Indices = std::vector<std::size_t>;
 
@@ -50,55 +47,10 @@ std::set<std::uint32_t> rows_of(const SetCoverInstance& instance, const Indices&
   return rows;
 }
 
-Indices all_columns(const SetCoverInstance& instance) {
-  Indices all(instance.columns.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return all;
-}
-
 bool is_redundant(const SetCoverInstance& instance, const Indices& chosen, std::size_t which) {
   Indices others = chosen;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(which));
   return rows_of(instance, others) == rows_of(instance, chosen);
-}
-
-// The least number of columns that cover what all of them cover, by trying every subset.
-std::size_t least_cover(const SetCoverInstance& instance) {
-  std::vector<std::uint32_t> masks;
-  std::uint32_t wanted = 0;
-  for (std::size_t c = 0; c < instance.columns.size(); ++c) {
-    std::uint32_t mask = 0;
-    for (const std::uint32_t row : instance.columns[c]) mask |= std::uint32_t{1} << row;
-    masks.push_back(mask);
-    wanted |= mask;
-  }
-  std::size_t least = masks.size();
-  for (std::uint32_t subset = 0; subset < (std::uint32_t{1} << masks.size()); ++subset) {
-    const auto size = static_cast<std::size_t>(std::popcount(subset));
-    if (size >= least) continue;
-    std::uint32_t covered = 0;
-    for (std::size_t c = 0; c < masks.size(); ++c) {
-      if ((subset >> c & 1U) != 0) covered |= masks[c];
-    }
-    if (covered == wanted) least = size;
-  }
-  return least;
-}
-
-TEST(SetCover, CoversWhatCanBeCoveredWithoutAnyRedundantColumn) {
-  Random random(31);
-  for (int i = 0; i < 300; ++i) {
-    const SetCoverInstance instance =
-        random_instance(random, 1 + random.index(80), random.index(60), random.between(0.0, 0.4));
-    const Indices chosen = greedy_set_cover(instance);
-    ASSERT_EQ(rows_of(instance, chosen), rows_of(instance, all_columns(instance)));
-    ASSERT_EQ(std::set<std::size_t>(chosen.begin(), chosen.end()).size(), chosen.size());
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-      ASSERT_LT(chosen[k], instance.columns.size());
-      ASSERT_FALSE(is_redundant(instance, chosen, k));
-    }
-    ASSERT_EQ(greedy_set_cover(instance), chosen);
-  }
 }
 
 // The greedy algorithm as it is defined, every gain counted anew.
@@ -132,44 +84,6 @@ TEST(SetCover, TakesWhatThePlainGreedyAlgorithmTakes) {
   for (int i = 0; i < 60; ++i) {
     const SetCoverInstance instance = random_instance(random, 60, 50, random.between(0.05, 0.3));
     ASSERT_EQ(greedy_set_cover(instance), plain_greedy(instance));
-  }
-}
-
-TEST(SetCover, IsWithinTheGreedyBoundOfTheLeast) {
-  Random random(32);
-  for (int i = 0; i < 150; ++i) {
-    const SetCoverInstance instance = random_instance(
-        random, 1 + random.index(20), 1 + random.index(12), random.between(0.1, 0.5));
-    std::size_t largest = 1;
-    for (std::size_t c = 0; c < instance.columns.size(); ++c) {
-      largest = std::max(largest, instance.columns[c].size());
-    }
-    const std::size_t least = least_cover(instance);
-    const std::size_t found = greedy_set_cover(instance).size();
-    ASSERT_GE(found, least);
-    ASSERT_LE(static_cast<double>(found),
-              (1.0 + std::log(static_cast<double>(largest))) * static_cast<double>(least));
-  }
-}
-
-TEST(SetCover, OfSmallInstancesIsKnown) {
-  struct Case {
-    SetCoverInstance instance;
-    Indices expected;
-  };
-  for (const auto& [instance, expected] : std::vector<Case>{
-           // The largest first, and the lowest index of equal ones.
-           {{4, {{0, 1}, {2, 3}, {2, 3}, {0, 1}}}, {0, 1}},
-           {{5, {{0}, {1, 2, 3}, {0, 4}}}, {1, 2}},
-           // Column 0 comes first; columns 1 and 2, which are needed for rows 4 and 5, then make it
-           // superfluous.
-           {{6, {{0, 1, 2, 3}, {0, 1, 4}, {2, 3, 5}}}, {1, 2}},
-           // Rows that no column covers stay open.
-           {{3, {{1}}}, {0}},
-           {{3, {{}, {}}}, {}},
-           {{3, {}}, {}},
-           {{0, {{}}}, {}}}) {
-    EXPECT_EQ(greedy_set_cover(instance), expected);
   }
 }
 
@@ -299,56 +213,6 @@ TEST(CoverSearch, KnowsOnlyItsRowsAndTheirWeights) {
   EXPECT_GE(search.weights().back(), 9U);
 }
 
-// Against the instance itself: who holds what, and that nothing heavier was passed over.
-TEST(CoverCore, HoldsTheHeaviestColumnsOfEachRow) {
-  Random random(5);
-  for (int i = 0; i < 20; ++i) {
-    // So that some rows have more columns than enter the core unseen, and others have not.
-    const Planted made = planted(random, 200, 15, 1000);
-    CoverSearch::Rows known;
-    for (std::uint32_t row = 0; row < 200; row += 4) {
-      known.rows.push_back(row);
-      known.weights.push_back(1 + static_cast<std::uint32_t>(random.index(50)));
-    }
-    const std::vector<std::size_t> start{7, 3};
-    internal::CoverCore core(made.instance, made.columns_of, known, start);
-    std::vector<std::uint32_t> rows = known.rows;
-    for (const std::uint32_t row : {1U, 2U}) {
-      core.add_row(row);
-      rows.push_back(row);
-    }
-    EXPECT_EQ(core.in_core(start), (std::vector<std::size_t>{0, 1}));
-    EXPECT_LT(core.column_count(), made.instance.columns.size());
-    std::vector<std::uint32_t> numbers(core.column_count());
-    std::iota(numbers.begin(), numbers.end(), 0U);
-    const std::vector<std::size_t> columns = core.in_instance(numbers);
-    std::vector<std::uint64_t> weight(made.instance.columns.size(), 0);
-    for (std::size_t k = 0; k < known.rows.size(); ++k) {
-      for (const std::uint32_t c : made.columns_of[known.rows[k]]) weight[c] += known.weights[k];
-    }
-    std::uint64_t entries = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      std::set<std::size_t> listed;
-      for (const std::uint32_t c : core.columns_of()[k]) EXPECT_TRUE(listed.insert(c).second);
-      std::vector<std::uint64_t> in, out;
-      for (const std::uint32_t c : made.columns_of[rows[k]]) {
-        const auto at = std::ranges::find(columns, c);
-        const bool held = at != columns.end();
-        EXPECT_EQ(held, held && listed.contains(static_cast<std::size_t>(at - columns.begin())));
-        (held ? in : out).push_back(weight[c]);
-      }
-      EXPECT_EQ(in.size(), listed.size());
-      entries += in.size();
-      std::ranges::sort(in, std::greater<>());
-      if (!out.empty()) {
-        ASSERT_GE(in.size(), 16U);
-        EXPECT_GE(in[15], *std::ranges::max_element(out));
-      }
-    }
-    EXPECT_EQ(core.entries(), entries);
-  }
-}
-
 // Rounds that a search with these counts makes before it ends.
 int rounds_that_pay(int effort, const std::function<std::size_t(int)>& count) {
   internal::CoverYield yield(effort, CoverOptions{}.effort);
@@ -404,59 +268,6 @@ TEST(LazyCoverSearch, SaysSoWhereItsBudgetEndsBeforeAllRowsAreCovered) {
   LazyCoverSearch search{made.instance, made.columns_of, rows_of(made.instance, 40), {}};
   EXPECT_FALSE(search.reach(made.known - 8, 20, 5, kNeeded));
   EXPECT_LE(search.columns().size(), made.known - 8);
-}
-
-// --- tournament ---
-
-// By a look at all of them.
-std::uint32_t least_of(const std::vector<std::uint64_t>& keys, std::uint32_t except) {
-  std::uint32_t best = Tournament::kNone;
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    if (i != except && (best == Tournament::kNone || keys[i] < keys[best])) best = i;
-  }
-  return best;
-}
-
-// Items come at the end, go with the last taking their place, and change, several between two
-// questions; few keys make many ties.
-TEST(Tournament, FindsWhatALookAtAllFinds) {
-  Random random(1);
-  for (const std::size_t most : {1U, 3U, 64U, 65U, 1000U}) {
-    std::vector<std::uint64_t> keys;
-    Tournament tournament;
-    const auto less = [&](std::uint32_t a, std::uint32_t b) {
-      EXPECT_LT(a, keys.size());
-      EXPECT_LT(b, keys.size());
-      return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
-    };
-    bool was_full = false;
-    for (int question = 0; question < 2000; ++question) {
-      was_full = was_full || keys.size() == most;
-      for (std::size_t change = random.index(12); change > 0; --change) {
-        const std::size_t what = random.index(4);
-        if ((what == 0 || (what == 2 && !was_full)) && keys.size() < most) {
-          keys.push_back(random.index(50));
-          tournament.touch(static_cast<std::uint32_t>(keys.size() - 1));
-        } else if (what == 1 && !keys.empty()) {
-          const std::size_t gone = random.index(keys.size());
-          keys[gone] = keys.back();
-          keys.pop_back();
-          tournament.touch(static_cast<std::uint32_t>(gone));
-          tournament.touch(static_cast<std::uint32_t>(keys.size()));
-        } else if (!keys.empty()) {
-          const std::size_t changed = random.index(keys.size());
-          keys[changed] = random.index(50);
-          tournament.touch(static_cast<std::uint32_t>(changed));
-        }
-      }
-      const std::uint32_t except = random.index(3) == 0 || keys.empty()
-                                       ? Tournament::kNone
-                                       : static_cast<std::uint32_t>(random.index(keys.size()));
-      ASSERT_EQ(tournament.least(static_cast<std::uint32_t>(keys.size()), except, less),
-                least_of(keys, except));
-    }
-    EXPECT_TRUE(was_full);
-  }
 }
 
 }  // namespace

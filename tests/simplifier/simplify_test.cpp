@@ -6,13 +6,11 @@
 #include "simplifier/bodies.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/option_record.h"
-#include "simplifier/repair.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/simplifier/octree_proof.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
-#include "tests/support/rounding_mode.h"
 #include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
@@ -112,8 +110,11 @@ TEST(Simplify, KeepsToTheThreadsItIsGiven) {
   SimplifyOptions options = coarse(0.2);
   options.threads = 1;
   std::set<std::string> stages;
-  options.progress = [&](double, const char* what) {
+  double last = 0.0;
+  options.progress = [&](double share, const char* what) {
     stages.insert(what);
+    EXPECT_GE(share, last);
+    last = share;
     using tbb::global_control;
     EXPECT_EQ(global_control::active_value(global_control::max_allowed_parallelism), 1U) << what;
   };
@@ -156,23 +157,6 @@ TEST(Simplify, DegenerateInputIsCovered) {
   }
   // The default error is a share of the diagonal, and a point has none.
   EXPECT_THROW(simplify(point({1, 2, 3})), Error);
-}
-
-TEST(Simplify, AFileHoldsSpheresCertificateAndOptions) {
-  const Simplification result = simplify(l_bracket(), coarse(0.1));
-  const SphereFile file = sphere_file(result, 2.0);
-  EXPECT_EQ(file.spheres, result.cover.spheres);
-  EXPECT_EQ(file.options, option_record(result.options, 2.0));
-  ASSERT_TRUE(file.certificate.has_value());
-  EXPECT_TRUE(file.certificate->covered);
-  EXPECT_EQ(file.certificate->sphere_count, file.spheres.size());
-  EXPECT_EQ(file.certificate->protrusion_over_simplified_max,
-            result.certificate.protrusion_over_simplified_max);
-  EXPECT_EQ(file.certificate->protrusion_over_mesh_max,
-            result.certificate.protrusion_over_mesh->upper);
-  // An audit from the file alone comes to the same end.
-  const ExternalOptions again = external_options(options_from_record(file.options));
-  EXPECT_EQ(place_external_spheres(l_bracket(), again).spheres, result.external.spheres);
 }
 
 // --- promises that a fit did not keep ---
@@ -305,46 +289,6 @@ TEST(SimplifyRecord, BadValuesAreRefusedByName) {
   }
 }
 
-// --- refusals ---
-
-TEST(Simplify, BadOptionsAreRefusedByName) {
-  const auto refused_with = [](double SimplifyOptions::*field, double value) {
-    SimplifyOptions options = coarse(0.2);
-    options.*field = value;
-    return refused([&] { simplify(cube_mesh(), options); });
-  };
-  for (const double bad : {-1.0, kNan, kInfinity}) {
-    for (const auto& [field, name] :
-         {std::pair{&SimplifyOptions::max_error, "max error"},
-          {&SimplifyOptions::min_external_diameter, "min external diameter"},
-          {&SimplifyOptions::padding, "padding"},
-          {&SimplifyOptions::min_radius, "min radius"},
-          {&SimplifyOptions::min_internal_diameter, "min internal diameter"}}) {
-      EXPECT_EQ(refused_with(field, bad), name) << bad;
-    }
-  }
-  TriangleMesh broken = cube_mesh();
-  broken.triangles[0][1] = 8;
-  for (const TriangleMesh& mesh : {TriangleMesh{}, broken}) {
-    EXPECT_EQ(refused([&] { simplify(mesh, coarse(0.2)); }), "mesh");
-  }
-}
-
-// Whatever a fit or an audit consists of is refused where it is called by itself, too.
-TEST(RoundingMode, OthersAreRefusedByEveryStage) {
-  const TriangleMesh cube = cube_mesh();
-  const ExternalSpheres external = place_external_spheres(cube, {.min_external_diameter = 4.0});
-  const SphereCover few = cover(cube, external, {.max_error = 1.0, .effort = 0});
-  expect_rounding_to_nearest_is_needed(
-      [&] { place_external_spheres(cube, {.min_external_diameter = 4.0}); }, "stage 1");
-  expect_rounding_to_nearest_is_needed(
-      [&] { cover(cube, external, {.max_error = 1.0, .effort = 0}); }, "cover");
-  expect_rounding_to_nearest_is_needed(
-      [&] { repair(cube, external, few.spheres, {.max_error = 1.0, .effort = 0}); }, "repair");
-  expect_rounding_to_nearest_is_needed([&] { certify(cube, few.spheres, {.external = &external}); },
-                                       "certify");
-}
-
 // --- a stage 2 method from outside ---
 
 TEST(Stage2Method, ItsSpheresAreCertifiedWhateverItMade) {
@@ -397,14 +341,13 @@ TEST(Stage2Method, ItsNameSurvivesTheRecordButCannotBeRunFromThere) {
 constexpr double kFinest = kSanitized ? 0.09 : 0.075;
 
 Simplification fitted_levels(const TriangleMesh& mesh, CoverMethod method = CoverMethod::kCover,
-                             double min_radius = 0.0, int threads = 0) {
+                             double min_radius = 0.0) {
   const double size = diagonal_of(mesh);
   return simplify(mesh, {.levels = {2.0 * kFinest * size, kFinest * size, 4.0 * kFinest * size},
                          .min_external_diameter = 4.0 * kFinest * size,
                          .min_radius = min_radius * size,
                          .method = method,
-                         .effort = effort(3, 1),
-                         .threads = threads});
+                         .effort = effort(3, 1)});
 }
 
 // Every child lies in its parent, in long double: more bits than the reserve of the parents.
@@ -474,19 +417,6 @@ TEST(Levels, AreFewerAndCloserThanPlainClustering) {
   }
 }
 
-TEST(Levels, AreEqualInEveryRunOnAnyNumberOfThreads) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  const Simplification first = fitted_levels(l_bracket());
-  for (const int threads : {1, 2}) {
-    const Simplification again = fitted_levels(l_bracket(), CoverMethod::kCover, 0.0, threads);
-    for (std::size_t k = 0; k < first.levels.size(); ++k) {
-      EXPECT_EQ(first.levels[k].spheres.spheres, again.levels[k].spheres.spheres);
-      EXPECT_EQ(first.levels[k].spheres.parent_of, again.levels[k].spheres.parent_of);
-      EXPECT_EQ(first.levels[k].protrusion, again.levels[k].protrusion);
-    }
-  }
-}
-
 TEST(Levels, TheFinestIsTheErrorOfTheCover) {
   constexpr double kFine = kSanitized ? 0.35 : 0.1;
   constexpr double kCoarse = 2.0 * kFine;
@@ -503,18 +433,6 @@ TEST(Levels, TheFinestIsTheErrorOfTheCover) {
   }
   EXPECT_TRUE(levels(kFine, {}).levels.empty());
   EXPECT_TRUE(levels(0.0, {kFine}).levels.empty());
-}
-
-TEST(Levels, RefusesErrorsOutOfRange) {
-  const auto reason = [](double max_error, const std::vector<double>& levels) {
-    return refusal(
-        [&] { simplify(cube_mesh(), {.max_error = max_error, .levels = levels, .effort = 0}); });
-  };
-  for (const double bad : {0.0, -0.1, kNan, 1e300}) {
-    EXPECT_NE(reason(0.0, {0.1, bad}).find("levels: must be positive"), std::string::npos) << bad;
-  }
-  EXPECT_NE(reason(0.1, {0.2, 0.05}).find("finer than the max error"), std::string::npos);
-  EXPECT_NE(reason(0.1, {0.2, 0.2001}).find("1 % larger"), std::string::npos);
 }
 
 // --- several bodies ---

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "collide/collide.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
 #include "spheretree/level_tree.h"
@@ -151,51 +150,6 @@ TEST(Refit, SignsOfZeroAreTakenOver) {
   const SphereTree refitted = refit(tree, moved);
   expect_good(refitted, tree, moved);
   EXPECT_TRUE(same_spheres(refitted, build_tree(moved)));
-}
-
-// All pairs of a refitted tree, in their order, are those of a new one over the same spheres.
-TEST(Refit, QueriesFindThePairsThatANewTreeFinds) {
-  Random random(26);
-  std::size_t pairs = 0;
-  for (const Family& family : sphere_families(150, 8)) {
-    double extent = 0.0;
-    for (const Sphere& sphere : family.spheres) {
-      extent = std::max(extent, (sphere.center - family.spheres[0].center).norm());
-    }
-    const SphereTree tree = build_tree(family.spheres);
-    for (int i = 0; i < 5; ++i) {
-      const std::vector<Sphere> moved = stirred(family.spheres, random, 0.2, 1 + random.index(4));
-      const SphereTree refitted = refit(tree, moved);
-      const SphereTree built = build_tree(moved);
-      const Eigen::Quaterniond turn(random.unit(), random.unit(), random.unit(), 1.0);
-      const Pose pose_a(turn, extent * random.point(0.5));
-      const Pose pose_b(turn.conjugate(), pose_a * moved[0].center - moved[1].center);
-      const CollisionResult found = collide(refitted, pose_a, tree, pose_b);
-      const CollisionResult expected = collide(built, pose_a, tree, pose_b);
-      EXPECT_EQ(found.verdict, expected.verdict) << family.name;
-      EXPECT_EQ(found.pairs, expected.pairs) << family.name;
-      pairs += found.pairs.size();
-    }
-  }
-  EXPECT_GT(pairs, 100000U);
-}
-
-// Where a motion keeps the splits, the refitted tree is the one that would be built: here all
-// coordinates are small integers, which a shift by a larger power of two keeps exact.
-TEST(Refit, AShiftGivesTheTreeThatWouldBeBuilt) {
-  Random random(24);
-  std::vector<Sphere> spheres;
-  for (int i = 0; i < 700; ++i) {
-    const auto coordinate = [&random] { return static_cast<double>(random.index(1024)); };
-    const double x = coordinate();
-    const double y = coordinate();
-    spheres.push_back({{x, y, coordinate()}, 32.0});
-  }
-  const SphereTree tree = build_tree(spheres);
-  for (Sphere& sphere : spheres) sphere.center += Vector3d(4096.0, -8192.0, 16384.0);
-  const SphereTree built = build_tree(spheres);
-  ASSERT_TRUE(same_nodes(built, tree));
-  EXPECT_TRUE(same_spheres(refit(tree, spheres), built));
 }
 
 // Spheres as tight as a new tree's where neighbours stay neighbours; a tree that is valid but

@@ -84,14 +84,6 @@ TEST(BuildTree, TheBoxHoldsTheSpheresTightly) {
   }
 }
 
-TEST(BuildTree, TheRootOfFewSpheresIsTheirSmallestSphere) {
-  const std::vector<Sphere> corners = {
-      {{1, 1, 1}, 0.5}, {{1, -1, -1}, 0.5}, {{-1, 1, -1}, 0.5}, {{-1, -1, 1}, 0.5}};
-  const Sphere root = build_tree(corners).sphere(0);
-  EXPECT_LT(root.center.norm(), 1e-14);
-  EXPECT_NEAR(root.radius, std::sqrt(3.0) + 0.5, 1e-14);
-}
-
 // A million spheres that no split can tell apart, or that lie on a line, or whose clusters shrink
 // geometrically so that splits take off one at a time: neither deep recursion nor quadratic
 // time (which would not end within the test's time limit).
@@ -129,20 +121,6 @@ TEST(BuildTree, GivesGoldenBytes) {
     for (const auto* numbers : {&data.first_child, &data.child_count}) add(*numbers);
   }
   EXPECT_EQ(hash, kGolden) << "0x" << std::hex << hash;
-}
-
-// A shell has no volume to fill, as a cover of a thin part: the splits stay even enough that 8-wide
-// nodes over a million spheres stay far shallower than the worst case.
-TEST(BuildTree, AMillionSpheresOnAShellStayShallow) {
-  constexpr auto kCount = static_cast<std::size_t>(effort(1000000, 100000));
-  Random random(13);
-  std::vector<Sphere> spheres;
-  const double radius = std::sqrt(12.5 / static_cast<double>(kCount));
-  for (std::size_t i = 0; i < kCount; ++i) spheres.push_back({random.direction(), radius});
-  const SphereTree tree = build_tree(spheres);
-  EXPECT_LE(tree.depth(), 9);
-  EXPECT_LE(tree.node_count(), kCount + kCount / 2);
-  EXPECT_LE(tree.sphere(0).radius, 1.75);
 }
 
 // Where the spheres are spread out, each level must be a good deal tighter than the one above it:
@@ -295,21 +273,6 @@ TEST(Check, RefusesEveryWrongIndexAndCount) {
   }
 }
 
-TEST(Check, NamesTheFault) {
-  SphereTreeData data = some_tree();
-  data.first_child[0] = 0;  // a cycle
-  expect_refused(data, "node 0: the first child is 0 where breadth-first order has 1");
-  data = some_tree();
-  data.child_count[0] = -4;
-  expect_refused(data, "node 0: -4 children");
-  data = some_tree();
-  data.spheres.push_back({{0, 0, 0}, 1.0});
-  expect_refused(data, "sphere 60 has no leaf");
-  data = some_tree();
-  data.spheres[7].radius *= 2.0;
-  expect_refused(data, "is not that of sphere 7");
-}
-
 // Two leaves exchange spheres that are bit for bit the same: still one leaf each. One leaf naming
 // the other's sphere is not.
 TEST(Check, WantsOneLeafForEachSphere) {
@@ -452,15 +415,6 @@ TEST(LevelTree, EveryFamilyGivesAValidTree) {
       }
     }
   }
-}
-
-TEST(LevelTree, WithoutLevelsIsTheOrdinaryTree) {
-  const std::vector<Sphere> spheres = sphere_families(200, 5).front().spheres;
-  const LevelTree made = build_tree_from_levels(spheres, {});
-  const SphereTreeData plain = build_tree(spheres).data();
-  EXPECT_EQ(made.tree.data().x, plain.x);
-  EXPECT_EQ(made.tree.data().radius, plain.radius);
-  EXPECT_EQ(made.tree.data().first_child, plain.first_child);
 }
 
 // Spheres that touch the parent from inside leave no room for smallest spheres around groups of

@@ -9,6 +9,5 @@ namespace spherule::test {
 // finds no memory any more, and how many bytes it finds at most.
 extern int allocations;
 extern bool exhausted;
-extern std::size_t most_bytes;
 
 }  // namespace spherule::test

@@ -4,7 +4,6 @@
 #include "geometry/mesh_distance.h"
 #include "geometry/mesh_report.h"
 #include "io/cad/cad_file.h"
-#include "io/cad/cad_shape.h"
 #include "simplifier/bodies.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/cad/cad_parts.h"
@@ -88,22 +87,6 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CadBoundsOf, testing::ValuesIn([] {
                            return names;
                          }()),
                          [](const auto& shape) { return shape.param; });
-
-// The piece whose weights are all equal comes from OpenCASCADE without them.
-TEST(CadJump, IsBoundedBetweenPiecesOfDifferentWeight) {
-  for (const double weight : {1.0, 1000.0, 0.001}) {
-    SCOPED_TRACE(weight);
-    const BentSheet sheet = bent_sheet(weight);
-    const internal::Interval across{0.0, 11.0};
-    const internal::Interval along{0.0, 1.0};
-    const double least = sheet.jump * (1.0 - 1e-9);
-    const double u_jump = internal::surface_of(sheet.extruded).bound(across, along).jump_u;
-    EXPECT_GE(u_jump, std::max(least, 1.0 - 1e-9));
-    EXPECT_LE(u_jump, 1.1 * sheet.jump);
-    EXPECT_GE(internal::surface_of(sheet.bent_along_u).bound(across, along).jump_u, least);
-    EXPECT_GE(internal::surface_of(sheet.bent_along_v).bound(along, across).jump_v, least);
-  }
-}
 
 TEST(CadBounds, SolidsComeOutClosed) {
   for (const char* name : {"box", "cylinder", "cone", "sphere", "torus", "plate", "spline_torus"}) {
@@ -231,36 +214,6 @@ TEST(CadBodies, SolidsOfAPartAreBodies) {
   EXPECT_EQ(read_cad(step).stated_unit, "inch");
   write_iges(shape_named("torus"), folder.path() / "one.iges");
   EXPECT_EQ(read_cad_bodies(folder.path() / "one.iges").size(), 1u);
-}
-
-// More than a hundred bodies: each as if it were fitted alone, on one thread and on two; what
-// OpenCASCADE has on the faces of each in its place lies in its spheres.
-TEST(CadBodies, AHundredBodiesAreFittedAsEachAlone) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  const TempDir folder;
-  const std::vector<AssemblyPart> parts = box_parts(12, 9);
-  write_assembly(parts, folder.path() / "all.step");
-  const std::vector<Body> bodies = bodies_of(read_cad_bodies(folder.path() / "all.step"));
-  ASSERT_EQ(bodies.size(), 9u * parts.size());
-  SimplifyOptions options{.max_error = 4.0, .effort = 0, .threads = 1};
-  const std::vector<BodyFit> fits = fit_bodies(bodies, options);
-  options.threads = 2;
-  const std::vector<BodyFit> again = fit_bodies(bodies, options);
-  ASSERT_EQ(fits.size(), bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    SCOPED_TRACE(bodies[i].name);
-    EXPECT_EQ(fits[i].broken, "");
-    EXPECT_TRUE(fits[i].certificate.covered);
-    ASSERT_EQ(fits[i].spheres, again[i].spheres);
-    if (!bodies[i].copy && i < 27) {
-      EXPECT_EQ(fits[i].spheres, simplify(bodies[i].mesh, options).cover.spheres);
-    }
-    const TopoDS_Shape placed = parts[i / 9].shape.Moved(parts[i / 9].places[i % 9]);
-    EXPECT_EQ(uncovered(fits[i].spheres, points_of(placed, 40)), 0u);
-  }
-  const SphereFile file = sphere_file(bodies, fits, std::vector<double>(bodies.size(), 1.0));
-  EXPECT_TRUE(file.certificate->covered);
-  EXPECT_EQ(file.bodies.size(), bodies.size());
 }
 
 }  // namespace

@@ -30,7 +30,6 @@
 #include <Geom_BezierSurface.hxx>
 #include <Geom_OffsetSurface.hxx>
 #include <Geom_Surface.hxx>
-#include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
@@ -114,12 +113,15 @@ Handle(Geom_BSplineCurve) wavy_curve() {
 }
 
 // A surface that is only continuous along a line: a roof of degree one, bent along the other way.
+// The weights of one of its two pieces are equal, so that OpenCASCADE gives that one none.
 TopoDS_Shape creased_face() {
   TColgp_Array2OfPnt poles(1, 3, 1, 3);
+  TColStd_Array2OfReal weights(1, 3, 1, 3);
   const double heights[] = {0, 12, 2};
   for (int i = 1; i <= 3; ++i) {
     for (int j = 1; j <= 3; ++j) {
       poles.SetValue(i, j, gp_Pnt(15.0 * i, 15.0 * j, heights[i - 1] + (j == 2 ? 6.0 : 0.0)));
+      weights.SetValue(i, j, i == 3 ? 0.7 : 1.0);
     }
   }
   TColStd_Array1OfReal u_knots(1, 3);
@@ -135,7 +137,7 @@ TopoDS_Shape creased_face() {
     v_times.SetValue(j, 3);
   }
   const Handle(Geom_BSplineSurface) surface =
-      new Geom_BSplineSurface(poles, u_knots, v_knots, u_times, v_times, 1, 2);
+      new Geom_BSplineSurface(poles, weights, u_knots, v_knots, u_times, v_times, 1, 2);
   return BRepBuilderAPI_MakeFace(surface, kTolerance).Shape();
 }
 
@@ -214,47 +216,6 @@ TopoDS_Shape shape_named(const std::string& name) {
 TopoDS_Shape offset_face() {
   const Handle(Geom_OffsetSurface) surface = new Geom_OffsetSurface(wavy_surface(), 1.5);
   return BRepBuilderAPI_MakeFace(surface, kTolerance).Shape();
-}
-
-BentSheet bent_sheet(double weight) {
-  const gp_Pnt corners[] = {gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0), gp_Pnt(1, 1, 0)};
-  TColgp_Array1OfPnt poles(1, 3);
-  TColStd_Array1OfReal weights(1, 3);
-  TColgp_Array2OfPnt sheet_poles(1, 3, 1, 2);
-  TColStd_Array2OfReal sheet_weights(1, 3, 1, 2);
-  TColStd_Array1OfReal knots(1, 3);
-  TColStd_Array1OfInteger times(1, 3);
-  const double at[] = {0, 1, 11};
-  for (int i = 1; i <= 3; ++i) {
-    poles(i) = corners[i - 1];
-    weights(i) = i == 3 ? 0.99 * weight : weight;
-    for (int j = 1; j <= 2; ++j) {
-      sheet_poles(i, j) = poles(i).Translated(gp_Vec(0, 0, j - 1));
-      sheet_weights(i, j) = weights(i);
-    }
-    knots(i) = at[i - 1];
-    times(i) = i == 2 ? 1 : 2;
-  }
-  TColStd_Array1OfReal two_knots(1, 2);
-  TColStd_Array1OfInteger twice(1, 2);
-  two_knots(1) = 0;
-  two_knots(2) = 1;
-  twice.Init(2);
-  const Handle(Geom_BSplineCurve) curve = new Geom_BSplineCurve(poles, weights, knots, times, 1);
-  const Handle(Geom_Surface) extruded = new Geom_SurfaceOfLinearExtrusion(curve, gp::DZ());
-  const Handle(Geom_BSplineSurface) along_u =
-      new Geom_BSplineSurface(sheet_poles, sheet_weights, knots, two_knots, times, twice, 1, 1);
-  const Handle(Geom_BSplineSurface) along_v =
-      Handle(Geom_BSplineSurface)::DownCast(along_u->Copy());
-  along_v->ExchangeUV();
-  gp_Pnt p;
-  gp_Vec before;
-  gp_Vec after;
-  curve->LocalD1(1.0, 1, 2, p, before);
-  curve->LocalD1(1.0, 2, 3, p, after);
-  return {BRepBuilderAPI_MakeFace(extruded, 0, 11, 0, 1, kTolerance).Face(),
-          BRepBuilderAPI_MakeFace(along_u, kTolerance).Face(),
-          BRepBuilderAPI_MakeFace(along_v, kTolerance).Face(), (after - before).Magnitude()};
 }
 
 TopoDS_Shape wire() {

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 
 #include <TopLoc_Location.hxx>
-#include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 #include <cstdint>
 #include <filesystem>
@@ -30,15 +29,6 @@ TopoDS_Shape shape_named(const std::string& name);
 
 // A face at a distance from a free-form one, of which nothing is proved.
 TopoDS_Shape offset_face();
-// Sheets 1 high along (0, 0, 0), (1, 0, 0), (1, 1, 0), of degree one with weights w, w, 0.99 w at
-// the knots 0, 1, 11, and how much the derivative jumps at 1.
-struct BentSheet {
-  TopoDS_Face extruded;
-  TopoDS_Face bent_along_u;
-  TopoDS_Face bent_along_v;
-  double jump;
-};
-BentSheet bent_sheet(double weight);
 // A square of edges without a face.
 TopoDS_Shape wire();
 // A box of 20 and another at (100, 0, 0), turned by a quarter about z, as an assembly.

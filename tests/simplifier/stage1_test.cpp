@@ -2,9 +2,9 @@
 // The flood of stage 1. What is wider than D by the closing slack is open (G2): chambers behind
 // ways whose width is known, and places among random blocks to which a finer flood of exact
 // distances gets, in zones of a smaller D too. Large spheres stand for the finest cells beside
-// surfaces.
+// surfaces. External spheres are free of the padded mesh, and only where a tool of the least
+// diameter can get.
 #include "simplifier/simplify.h"
-#include "simplifier/stage1/flood_refinement.h"
 #include "simplifier/types/zones.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
@@ -20,8 +20,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <variant>
+#include <string>
 #include <vector>
 
 namespace spherule::test {
@@ -29,7 +28,6 @@ namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-using internal::PlaceCell;
 
 Eigen::Isometry3d random_pose(Random& random) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -232,13 +230,6 @@ TEST(TightReach, NoPlaceAmongBlocksIsLost) {
 
 constexpr double kTightness = 0.03;
 
-bool holds(const ZoneShape& shape, const Vector3d& point) {
-  if (const auto* const ball = std::get_if<Sphere>(&shape)) {
-    return (point - ball->center).norm() <= ball->radius;
-  }
-  return std::get<AlignedBox3d>(shape).contains(point);
-}
-
 ExternalSpheres placed(const TriangleMesh& mesh, double diameter, double step,
                        const std::vector<Zone>& zones) {
   return place_external_spheres(mesh, {.min_external_diameter = diameter,
@@ -254,7 +245,7 @@ std::size_t places_in_zones(const TriangleMesh& mesh, const ExternalSpheres& ext
   const double share = 1.0 + external.closing_slack / external.min_external_diameter;
   const double greatest = 0.5 * share * external.min_external_diameter;
   const auto in_zone = [](const Vector3d& place) {
-    return [&](const Zone& zone) { return holds(zone.shape, place); };
+    return [&](const Zone& zone) { return zone_distance(zone.shape, place) == 0.0L; };
   };
   const auto radius_at = [&](const Vector3d& place) {
     double radius = greatest;
@@ -326,127 +317,7 @@ TEST(ZoneBorder, ALongBorderIsFollowedToItsEnd) {
   EXPECT_EQ(external.closing_slack, 0.08);
 }
 
-// Two blocks with a slot between them that only a zone opens, and just so for the larger sphere,
-// and above one of them another zone that ends at half a diameter: that one is not to be reached,
-// the slot is.
-TEST(ZoneBorder, BesideSuchAZoneNarrowWaysAreFound) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  constexpr double kDiameter = 2.0;
-  constexpr double kSmall = 0.5;
-  constexpr double kSlot = (1.0 + kTightness) * kSmall * 1.01;
-  Random random(76);
-  for (int n = 0; n < 2; ++n) {
-    const Vector3d low = random.direction();
-    const auto at = [&](double x, double y, double z) -> Vector3d {
-      return low + Vector3d(x, y, z);
-    };
-    const TriangleMesh mesh = joined(box_mesh(at(-4, 0, 0), at(4, 4, 4)),
-                                     box_mesh(at(4.0 + kSlot, 0, 0), at(7.0 + kSlot, 4, 4)));
-    const double depth = random.between(1.0, 3.0);
-    const ZoneShape above = AlignedBox3d(at(-3, 1, 2), at(-1, 3, 4.0 + kDiameter / 2.0));
-    const ZoneShape slot =
-        AlignedBox3d(at(3.5, -3, depth), at(4.5 + kSlot, 7, random.between(5.5, 7.0)));
-    const ExternalSpheres external = placed(mesh, kDiameter, 0.2,
-                                            {{.shape = above, .min_external_diameter = kSmall},
-                                             {.shape = slot, .min_external_diameter = kSmall}});
-    EXPECT_DOUBLE_EQ(external.closing_slack, kTightness * kDiameter);
-    for (double y = 0.5; y < 4.0; y += 0.25) {
-      for (double z = depth + 0.3; z < 4.0; z += 0.25) {
-        const Vector3d place = at(4.0 + kSlot / 2.0, y, z);
-        EXPECT_TRUE(is_in_a_sphere(external, place)) << n << ": " << y << " " << z;
-      }
-    }
-  }
-}
-
 // --- large spheres that stand for the finest cells beside flat and convex surfaces ---
-
-Vector3d corner_of_unit(int k) {
-  return {(k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 1.0 : -1.0, (k & 4) != 0 ? 1.0 : -1.0};
-}
-
-// Points of a cell: its corners, and random ones.
-std::vector<Vector3d> points_of(const PlaceCell& cell, Random& random) {
-  std::vector<Vector3d> points;
-  const auto& [center, half] = cell.box;
-  for (int k = 0; k < 8; ++k) points.push_back(center + half[0] * corner_of_unit(k));
-  const Eigen::AlignedBox3d box(center - half, center + half);
-  for (int n = 0; n < 40; ++n) {
-    points.push_back(random.in_box(box));
-  }
-  return points;
-}
-
-// The sphere is free of the padded mesh, and holds every place of its cell.
-TEST(SphereOfPlaces, HoldsEveryPlaceOfTheCellAndIsFree) {
-  Random random(81);
-  std::size_t found = 0;
-  std::size_t places = 0;
-  for (const NamedMesh& named : zoo_to_fit()) {
-    SCOPED_TRACE(named.name);
-    const MeshDistance distance(named.mesh);
-    for (int n = 0; n < effort(400, 100); ++n) {
-      const double rho = random.between(0.02, 0.2);
-      const double padding = n % 2 == 0 ? 0.0 : random.between(0.0, 0.5) * rho;
-      const double half_edge = random.between(0.1, 0.5) * rho;
-      const Vector3d start = named.mesh.vertices[random.index(named.mesh.vertices.size())] +
-                             random.between(0.0, 0.5) * random.direction();
-      const SurfaceDistance nearest = distance(start);
-      const Vector3d away = (start - nearest.closest).normalized();
-      if (!away.allFinite()) continue;
-      const Vector3d center = nearest.closest + random.between(0.4, 1.6) * rho * away;
-      const PlaceCell cell{.box = {center, Vector3d::Constant(half_edge)},
-                           .rho = rho,
-                           .step = 2.0 * half_edge / (n % 3 == 0 ? 4.0 : 2.0),
-                           .surface_at_most = distance(center).upper};
-      const auto wanted = internal::wanted_sphere(distance, padding, cell);
-      if (!wanted) continue;
-      const std::optional<Sphere> sphere =
-          internal::sphere_of_places(distance, padding, cell, *wanted);
-      if (!sphere) continue;
-      ++found;
-      ASSERT_GE(sphere->radius, rho);
-      ASSERT_LE(static_cast<Real>(sphere->radius) + padding,
-                judged_mesh_distance(sphere->center, named.mesh) * (1.0L + 1e-15L));
-      for (const Vector3d& point : points_of(cell, random)) {
-        if (judged_mesh_distance(point, named.mesh) < static_cast<Real>(rho) + padding) continue;
-        ++places;
-        ASSERT_LE(judged_distance(point, sphere->center),
-                  static_cast<Real>(sphere->radius) * (1.0L + 1e-15L));
-      }
-    }
-  }
-  EXPECT_GT(found, effort(100U, 20U));
-  EXPECT_GT(places, effort(2000U, 400U));
-}
-
-// Small triangles at the origin and where the surface is sampled beside it, and nothing between: in
-// a cell of half edge rho the corners are places, and below the sphere.
-TEST(SphereOfPlaces, ACellWithPlacesBelowTheSphereHasNone) {
-  for (const double half_edge : {0.6, 1.0}) {
-    TriangleMesh mesh;
-    const double aside = std::sqrt(2.0) * half_edge;
-    for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(aside, 0, 0), Vector3d(-aside, 0, 0),
-                               Vector3d(0, aside, 0), Vector3d(0, -aside, 0)}) {
-      const int first = static_cast<int>(mesh.vertices.size());
-      mesh.triangles.push_back({first, first + 1, first + 2});
-      for (const Vector3d& corner :
-           {Vector3d(-0.02, -0.02, 0), Vector3d(0.03, -0.02, 0), Vector3d(-0.02, 0.03, 0)}) {
-        mesh.vertices.push_back(at + corner);
-      }
-    }
-    const MeshDistance distance(mesh);
-    const PlaceCell cell{.box = {{0, 0, half_edge}, Vector3d::Constant(half_edge)},
-                         .rho = 1.0,
-                         .step = half_edge / 2.0,
-                         .surface_at_most = half_edge};
-    const auto wanted = internal::wanted_sphere(distance, 0.0, cell);
-    const bool is_held = half_edge < 0.7;
-    ASSERT_EQ(wanted.has_value(), is_held);
-    if (!is_held) continue;
-    EXPECT_TRUE(internal::sphere_of_places(distance, 0.0, cell, *wanted));
-  }
-}
 
 const ExternalOptions kFine{.min_external_diameter = 0.05, .max_error = 0.0125};
 
@@ -492,29 +363,6 @@ TEST(SphereOfPlaces, ABoxNeedsNoExternalSpheres) {
   }
 }
 
-// A ball that is closed takes fewer cells than with a way in.
-TEST(SphereOfPlaces, TheInsideOfAClosedPartIsNotHalved) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  const TriangleMesh closed = icosphere(2);
-  TriangleMesh open = closed;
-  open.triangles.pop_back();
-  const auto examined = [](const TriangleMesh& mesh) {
-    const ExternalOptions options{.min_external_diameter = 0.1, .max_error = 0.025};
-    return static_cast<double>(place_external_spheres(mesh, options).nodes_examined);
-  };
-  EXPECT_LT(examined(closed), 0.8 * examined(open));
-}
-
-// With own spheres in it too, where no finer cells are requested.
-TEST(SphereOfPlaces, TheSlackOfTheGridAsItIsIsProved) {
-  ExternalOptions options = kFine;
-  options.tightness = ExternalOptions::kNoTightness;
-  const ExternalSpheres external = place_external_spheres(turned_cube(), options);
-  EXPECT_LT(external.closing_slack, 2.7322 * external.grid_step * (1.0 + 1e-9));
-  EXPECT_LT(static_cast<double>(external.spheres.size()),
-            6.0 / (external.grid_step * external.grid_step));
-}
-
 // The large sphere in front of a zone needs more room on its way than in the zone.
 TEST(SphereOfPlaces, AZoneThatNothingReachesEndsTheSearch) {
   ExternalOptions options{.min_external_diameter = 1.0, .max_error = 0.1};
@@ -533,6 +381,193 @@ TEST(SphereOfPlaces, AreEqualEverywhere) {
     const std::uint64_t hash = hash_of(place_external_spheres(tetrahedron, options).spheres);
     EXPECT_EQ(hash, 0x01bca525a8fe7f5dU) << "0x" << std::hex << hash;
   }
+}
+
+// --- external spheres of both placements ---
+
+constexpr std::array kPlacements{ExternalPlacement::kReachable, ExternalPlacement::kRandom};
+
+ExternalOptions of_diameter(double diameter,
+                            ExternalPlacement placement = ExternalPlacement::kReachable) {
+  return {.placement = placement, .min_external_diameter = diameter, .limit = samples(3000, 800)};
+}
+
+// Two plates of 6 x 6 x 1 with a gap between them.
+TriangleMesh two_plates(double gap) {
+  return joined(box_mesh({0, 0, 0}, {6, 6, 1}), box_mesh({0, 0, 1 + gap}, {6, 6, 2 + gap}));
+}
+
+TEST(ExternalSpheres, AreFreeOfThePaddedMeshWhichIsInTheSolid) {
+  std::size_t examined = 0;
+  Random random(51);
+  for (const NamedMesh& named : zoo_to_fit()) {
+    SCOPED_TRACE(named.name);
+    const double size = diagonal_of(named.mesh);
+    for (const ExternalPlacement placement : kPlacements) {
+      for (const double padding : {0.0, 0.03 * size}) {
+        ExternalOptions options = of_diameter((kSanitized ? 0.5 : 0.25) * size, placement);
+        options.padding = padding;
+        TriangleMesh mesh = named.mesh;
+        mesh.vertex_error = padding / 16.0;
+        const ExternalSpheres external = place_external_spheres(mesh, options);
+        ASSERT_GE(external.padding, padding + mesh.vertex_error);
+        const std::size_t stride = kSanitized ? 64 : 16;
+        for (std::size_t i = 0; i < external.spheres.size(); i += stride) {
+          ++examined;
+          const Sphere& sphere = external.spheres[i];
+          ASSERT_GE(2.0 * sphere.radius, options.min_external_diameter);
+          ASSERT_LE(static_cast<Real>(sphere.radius) + external.padding,
+                    judged_mesh_distance(sphere.center, mesh) + 1e-17L * size);
+        }
+        // The surface and a point of it grown by the padding.
+        for (const Vector3d& p : points_on_surface(mesh, samples(200, 20), random)) {
+          ASSERT_TRUE(is_in_solid(p, external));
+          ASSERT_TRUE(is_in_solid(p + 0.999999 * padding * random.direction(), external));
+        }
+      }
+    }
+  }
+  EXPECT_GT(examined, effort(2000U, 100U));
+}
+
+TEST(ExternalSpheres, AGapNarrowerThanTheDiameterIsFilled) {
+  const double gap = 2.0;
+  const auto is_filled = [&](const ExternalOptions& options) {
+    return is_in_solid({3, 3, 1 + gap / 2}, place_external_spheres(two_plates(gap), options));
+  };
+  for (const ExternalPlacement placement : kPlacements) {
+    for (const double diameter : effort(std::vector{2.0001, 2.2, 3.0}, 1)) {
+      ExternalOptions options = of_diameter(diameter, placement);
+      options.limit = samples(10000, 2000);
+      EXPECT_TRUE(is_filled(options));
+    }
+  }
+  // The padding narrows the gap.
+  ExternalOptions options = of_diameter(1.5);
+  options.padding = 0.2501;
+  EXPECT_TRUE(is_filled(options));
+}
+
+TEST(ExternalSpheres, AClosedCavityIsFilledHoweverLarge) {
+  const TriangleMesh hollow =
+      joined(box_mesh({0, 0, 0}, {10, 10, 10}), inverted(box_mesh({1, 1, 1}, {9, 9, 9})));
+  Random random(52);
+  for (const ExternalPlacement placement : kPlacements) {
+    ExternalOptions options = of_diameter(1.0, placement);
+    options.grid_step = 0.25;
+    const ExternalSpheres external = place_external_spheres(hollow, options);
+    for (int i = 0; i < 1000; ++i) {
+      ASSERT_TRUE(is_in_solid(random.in_box({Vector3d::Zero(), Vector3d::Constant(10)}), external));
+    }
+  }
+}
+
+TEST(ExternalSpheres, WithoutPlacementTheSolidIsTheBox) {
+  const ExternalSpheres external =
+      place_external_spheres(cube_mesh(), {.placement = ExternalPlacement::kNone, .padding = 0.5});
+  EXPECT_TRUE(external.spheres.empty());
+  EXPECT_LE(external.box.min().maxCoeff(), -0.5);
+  EXPECT_GE(external.box.max().minCoeff(), 1.5);
+  EXPECT_NEAR(external.box.sizes().norm(), 2.0 * std::sqrt(3.0), 1e-12);
+}
+
+TEST(ExternalSpheres, ThePaddingIsTheSumOfTheTwoGivenWhereThereAreTwo) {
+  const auto padding = [](double vertex_error, double requested) {
+    TriangleMesh mesh = cube_mesh();
+    mesh.vertex_error = vertex_error;
+    return place_external_spheres(mesh,
+                                  {.placement = ExternalPlacement::kNone, .padding = requested})
+        .padding;
+  };
+  EXPECT_EQ(padding(0.0, 0.0), 0.0);
+  EXPECT_EQ(padding(0.1, 0.0), 0.1);
+  EXPECT_EQ(padding(0.0, 0.2), 0.2);
+  EXPECT_GE(padding(0.1, 0.2), 0.1L + 0.2L);
+  EXPECT_LE(padding(0.1, 0.2), 0.3 + 1e-15);
+}
+
+// --- too many cells ---
+
+// Before the two finest levels are examined, of which each has about four times the cells of the
+// one before.
+TEST(ExternalSpheres, TooManyCellsAreForeseenAndTheReasonSaysWhatToChoose) {
+  ExternalOptions options = of_diameter(0.01);
+  options.max_cells = std::size_t{1} << 20;
+  double last = 0.0;
+  options.progress = [&](double share, const char*) { last = share; };
+  const std::string said = refusal([&] { place_external_spheres(cube_mesh(), options); });
+  EXPECT_TRUE(said.starts_with("grid step: ")) << said;
+  EXPECT_NE(said.find("with a min external diameter "), std::string::npos) << said;
+  EXPECT_GT(last, 0.0);
+  EXPECT_LT(last, 0.9 / 16.0 + 1e-9);
+}
+
+// Coarser, and still what is promised of every grid; where that is not enough, or the step was
+// requested, it is refused.
+TEST(ExternalSpheres, WhereCellsAreTooManyTheGridIsCoarser) {
+  ExternalOptions options = of_diameter(0.25);
+  options.max_error = 0.01;
+  const ExternalSpheres fine = place_external_spheres(l_bracket(), options);
+  options.max_cells = fine.nodes_examined / 2;
+  const ExternalSpheres coarse = place_external_spheres(l_bracket(), options);
+  EXPECT_LE(coarse.nodes_examined, options.max_cells);
+  EXPECT_GT(coarse.grid_step, 1.2 * fine.grid_step);
+  EXPECT_LT(coarse.grid_step, 2.51 * fine.grid_step);
+  EXPECT_LE(coarse.closing_slack, 0.25 * options.tightness);
+  ASSERT_FALSE(coarse.spheres.empty());
+  for (const Sphere& sphere : coarse.spheres) {
+    EXPECT_GE(judged_mesh_distance(sphere.center, l_bracket()), sphere.radius);
+  }
+  options.grid_step = fine.grid_step;
+  EXPECT_THROW(place_external_spheres(l_bracket(), options), Error);
+  options.grid_step = 0.0;
+  options.max_cells = fine.nodes_examined / 50;
+  EXPECT_THROW(place_external_spheres(l_bracket(), options), Error);
+}
+
+TEST(ExternalSpheres, SaysWhetherAModelIsTooLargeOrTooFarFromItsOrigin) {
+  const auto said = [](double from, double size) {
+    const TriangleMesh mesh = box_mesh(Vector3d::Constant(from), Vector3d::Constant(from + size));
+    return refusal([&] { place_external_spheres(mesh, of_diameter(0.04)); });
+  };
+  EXPECT_NE(said(1e8, 0.1).find("with coordinates of up to 1e+08"), std::string::npos);
+  EXPECT_NE(said(0.0, 1e8).find("steps wide: fit it in parts"), std::string::npos);
+  EXPECT_EQ(said(1e4, 0.1), "accepted");
+}
+
+// --- reach ---
+
+// A pipe with a lid on one end, bent at a right angle: its far part is reached through the bend
+// only, and nothing in it leaves straight.
+TriangleMesh bent_duct() {
+  const std::vector<AlignedBox3d> walls = {
+      {Vector3d(0, 0, 0), Vector3d(6, 3, 0.5)},    // floor
+      {Vector3d(0, 0, 2.5), Vector3d(6, 3, 3)},    // ceiling
+      {Vector3d(0, 0, 0), Vector3d(0.5, 6, 3)},    // outer wall of the bend
+      {Vector3d(0, 0, 0), Vector3d(6, 0.5, 3)},    // outer wall
+      {Vector3d(2.5, 2.5, 0), Vector3d(6, 3, 3)},  // inner wall
+      {Vector3d(5.5, 0, 0), Vector3d(6, 3, 3)},    // lid of the far part
+      {Vector3d(0, 3, 0), Vector3d(3, 6, 0.5)},    // floor of the open part
+      {Vector3d(0, 3, 2.5), Vector3d(3, 6, 3)},    // ceiling of the open part
+      {Vector3d(2.5, 2.5, 0), Vector3d(3, 6, 3)}   // inner wall of the open part
+  };
+  TriangleMesh mesh;
+  for (const AlignedBox3d& wall : walls) mesh = joined(mesh, box_mesh(wall.min(), wall.max()));
+  return mesh;
+}
+
+TEST(ExternalReach, TheFarPartOfADuctIsOpenOnlyWhereTheWayThereIsWide) {
+  const auto is_open = [](const TriangleMesh& mesh, ExternalPlacement placement) {
+    return !is_in_solid({4.0, 1.5, 1.5}, place_external_spheres(mesh, {.placement = placement,
+                                                                       .min_external_diameter = 1.2,
+                                                                       .grid_step = 0.2,
+                                                                       .limit = 20000}));
+  };
+  const TriangleMesh duct = bent_duct();
+  EXPECT_TRUE(is_open(duct, ExternalPlacement::kReachable));
+  // A sill in the open part leaves a way of 1.1: what lies behind is filled.
+  const TriangleMesh blocked = joined(duct, box_mesh({0.5, 4.5, 0.5}, {2.5, 4.8, 1.4}));
+  for (const ExternalPlacement placement : kPlacements) EXPECT_FALSE(is_open(blocked, placement));
 }
 
 }  // namespace
