@@ -5,10 +5,9 @@
 
 namespace spherule::test {
 
-// A program that links spherule_counting_new has these: calls of operator new so far, whether it
-// finds no memory any more, and how many bytes it finds at most.
+// A program that links spherule_counting_new has these: calls of operator new so far, and how many
+// bytes it finds at most.
 extern int allocations;
-extern bool exhausted;
 extern std::size_t most_bytes;
 
 }  // namespace spherule::test

@@ -26,7 +26,7 @@
 #include <vector>
 
 // Many configurations a call, where there is too much to remember. That the answers are those of
-// exact queries, whatever the order: tests/soak/configurations_test.cpp.
+// exact queries, whatever the order: tests/soak/robots_test.cpp.
 
 namespace spherule::test {
 namespace {
