@@ -7,6 +7,7 @@
 #include "collide/pair_cache.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
+#include "tests/support/effort.h"
 #include "tests/support/exact/spheres.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
@@ -440,18 +441,17 @@ struct Arm {
     return pose * spheres[body].center;
   }
 
-  // By which the true spheres go into each other.
-  double depth(std::size_t body, std::size_t obstacle, const std::vector<double>& at) const {
-    const Sphere& other = obstacles[obstacle];
-    return kTrueSize * (spheres[body].radius + other.radius) -
-           (center(body, at) - other.center).norm();
+  // By which the spheres of a contact go into each other, of that size.
+  double depth(const MechanismPair& pair, const std::vector<double>& at, double size) const {
+    const auto body = static_cast<std::size_t>(pair.body);
+    const Sphere& other = obstacles[static_cast<std::size_t>(pair.obstacle)];
+    return size * (spheres[body].radius + other.radius) - (center(body, at) - other.center).norm();
   }
 
   // Always exact: every pair is queried; otherwise pairs that are clearly apart are not.
   MechanismCheck check(InstructionSet set, bool always_exact) const {
     std::vector<MechanismBody> bodies;
     std::vector<MechanismObstacle> things;
-    std::vector<MechanismPair> pairs;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       bodies.push_back(
           {static_cast<int>(i), Pose(), one_sphere_tree(spheres[i].center, spheres[i].radius)});
@@ -459,15 +459,20 @@ struct Arm {
     for (const Sphere& obstacle : obstacles) {
       things.push_back({Pose(), one_sphere_tree(obstacle.center, obstacle.radius)});
     }
-    for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
-      pairs.push_back({static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size())});
-    }
-    return MechanismCheck(frames, bodies, things, pairs, 0.0,
+    return MechanismCheck(frames, bodies, things, pairs(), 0.0,
                           {.instructions = set, .always_exact = always_exact});
+  }
+
+  std::vector<MechanismPair> pairs() const {
+    std::vector<MechanismPair> all;
+    for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
+      all.push_back({static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size())});
+    }
+    return all;
   }
 };
 
-// A closed way of the variables, slow; the obstacles stand where bodies come by.
+// A closed way of the variables, slow.
 struct Way {
   explicit Way(Random& random, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -488,7 +493,8 @@ struct Way {
   std::vector<double> rate;
 };
 
-Arm random_arm(Random& random, const Way& way, int steps) {
+// The obstacles stand where bodies come by, at distances within these shares of the radii's sum.
+Arm random_arm(Random& random, const Way& way, int steps, double nearest, double farthest) {
   Arm arm;
   for (int f = 0; f < static_cast<int>(way.start.size()); ++f) {
     arm.frames.push_back({f - 1, random.pose(0.5), f, random.whole(0, 3) == 0});
@@ -499,7 +505,7 @@ Arm random_arm(Random& random, const Way& way, int steps) {
         static_cast<std::size_t>(random.whole(0, static_cast<int>(way.rate.size()) - 1));
     const Vector3d met = arm.center(body, way.at(random.whole(0, steps)));
     const double radius = random.between(0.05, 0.2);
-    const double apart = random.between(0.7, 1.1) * (arm.spheres[body].radius + radius);
+    const double apart = random.between(nearest, farthest) * (arm.spheres[body].radius + radius);
     arm.obstacles.push_back({met + apart * random.point(1.0).normalized(), radius});
   }
   return arm;
@@ -511,7 +517,7 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   int touching = 0, refused = 0, unasked = 0, asked_anew = 0, queried = 0;
   for (int i = 0; i < 12; ++i) {
     const Way way(random, 4);
-    const Arm arm = random_arm(random, way, kSteps);
+    const Arm arm = random_arm(random, way, kSteps, 0.7, 1.1);
     std::vector<MechanismCheck> checks = {arm.check(InstructionSet::kPortable, false)};
     for (const InstructionSet set : instruction_sets()) checks.push_back(arm.check(set, true));
     for (std::size_t k = 0; k < checks.size(); ++k) {
@@ -525,8 +531,7 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
           return check.collides(at, remembering, [&](const MechanismContact& contact) {
             ++questions;
             const auto body = static_cast<std::size_t>(contact.pair.body);
-            const double depth =
-                arm.depth(body, static_cast<std::size_t>(contact.pair.obstacle), at);
+            const double depth = arm.depth(contact.pair, at, Arm::kTrueSize);
             if (depth < 0.0) return false;
             const Sphere& sphere = arm.spheres[body];
             check.remember_contact(contact.pair.body,
@@ -553,6 +558,36 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   EXPECT_GT(refused, 1000);
   EXPECT_GT(unasked, touching * 4 / 5);
   EXPECT_LT(queried, asked_anew / 4);
+}
+
+// Bodies that touch an obstacle slightly on their way, or miss it by little.
+TEST(CoherenceCache, OverlooksNoTouch) {
+  constexpr int kSteps = 4000;
+  Random random(92);
+  int touching = 0, close = 0;
+  for (int i = 0; i < effort(20, 5); ++i) {
+    const Way way(random, 4);
+    const Arm arm = random_arm(random, way, kSteps, 1.0 - 1e-3, 1.0 + 1e-2);
+    const std::vector<MechanismPair> pairs = arm.pairs();
+    std::vector<MechanismCheck> checks;
+    for (const InstructionSet set : instruction_sets()) checks.push_back(arm.check(set, false));
+    std::vector<MechanismCheck::Scratch> scratches(checks.begin(), checks.end());
+    for (int step = 0; step < kSteps; ++step) {
+      const std::vector<double> at = way.at(step);
+      double depth = -1.0;
+      for (const MechanismPair& pair : pairs) depth = std::max(depth, arm.depth(pair, at, 1.0));
+      for (std::size_t k = 0; k < checks.size(); ++k) {
+        const bool hit = checks[k].collides(at, scratches[k], [&](const MechanismContact& contact) {
+          return arm.depth(contact.pair, at, 1.0) >= 0.0;
+        });
+        ASSERT_EQ(hit, depth >= 0.0) << i << " at step " << step << ", " << depth;
+      }
+      touching += depth >= 0.0;
+      close += std::abs(depth) < 1e-3;
+    }
+  }
+  EXPECT_GT(touching, effort(500, 50));
+  EXPECT_GT(close, effort(100, 10));
 }
 
 TEST(RoundingMode, OthersAreRefused) {

@@ -8,6 +8,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/zoo.h"
 
 #include <gtest/gtest.h>
 
@@ -29,26 +30,8 @@ namespace {
 using Corners = std::array<Eigen::Vector3d, 3>;
 using Eigen::Vector3d;
 
-// A box from -half to half, facing outwards or inwards, its triangles added to `mesh` with corners
-// of their own, as STL files have them.
-void add_box(TriangleMesh& mesh, const Vector3d& half, bool inwards = false,
-             const Vector3d& center = Vector3d::Zero()) {
-  constexpr int kFaces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                                 {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  for (const auto& face : kFaces) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    for (const int i : face) {
-      const Vector3d sign((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-      mesh.vertices.push_back(center + sign.cwiseProduct(half));
-    }
-    mesh.triangles.emplace_back(first, first + (inwards ? 2 : 1), first + (inwards ? 1 : 2));
-  }
-}
-
-TriangleMesh box_mesh(const Vector3d& half) {
-  TriangleMesh mesh;
-  add_box(mesh, half);
-  return mesh;
+TriangleMesh centered_box(const Vector3d& half, const Vector3d& center = Vector3d::Zero()) {
+  return test::box_mesh(center - half, center + half);
 }
 
 std::shared_ptr<const SphereTree> shared_tree(const std::vector<Sphere>& spheres) {
@@ -111,18 +94,6 @@ bool touch_exactly(const TriangleMesh& a, const Pose& world_from_a, const Triang
   return false;
 }
 
-double mesh_gap(const TriangleMesh& a, const Pose& world_from_a, const TriangleMesh& b,
-                const Pose& world_from_b) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < a.triangles.size(); ++i) {
-    for (std::size_t j = 0; j < b.triangles.size(); ++j) {
-      least = std::min(least,
-                       exact_gap(corners_of(a, i), world_from_a, corners_of(b, j), world_from_b));
-    }
-  }
-  return least;
-}
-
 // Meshes brought near contact at random points of two triangles, anywhere in the world. What is
 // extra is apart by no more than the slack of the spheres and a rest.
 void compare_near_contact(double world, double width, double rest, int least_extra,
@@ -151,7 +122,7 @@ void compare_near_contact(double world, double width, double rest, int least_ext
     const Pose world_from_b(turned.rotation(), world_from_a * from - turned * to + offset);
     const bool hit = collides(covered_a, world_from_a, covered_b, world_from_b);
     ASSERT_EQ(hit, collides(covered_b, world_from_b, covered_a, world_from_a));
-    const double gap = mesh_gap(a, world_from_a, b, world_from_b);
+    const double gap = exact_gap(a, world_from_a, b, world_from_b);
     ASSERT_TRUE(hit || gap > 0.0) << "missed in case " << i;
     const double slack =
         rest + collision_slack(covered_a.cover(), world_from_a, covered_b.cover(), world_from_b);
@@ -187,13 +158,10 @@ TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
     TriangleMesh meshes[2];
     std::vector<Sphere> spheres[2];
     for (int k = 0; k < 2; ++k) {
-      for (int t = 0; t < 90; ++t) {
-        const Vector3d p = random.point(1.0);
-        const int first = static_cast<int>(meshes[k].vertices.size());
-        for (const double size : {0.0, 0.15, 0.15}) {
-          meshes[k].vertices.push_back(p + size * random.point(1.0));
-        }
-        meshes[k].triangles.emplace_back(first, first + 1, first + 2);
+      meshes[k] = random_triangles(random, 90, 0.15, 0.15);
+      for (std::size_t i = 0; i < meshes[k].vertices.size(); i += 3) {
+        const Vector3d shift = random.point(1.0);
+        for (std::size_t v = i; v < i + 3; ++v) meshes[k].vertices[v] += shift;
       }
       spheres[k] = {{Vector3d(-0.4, 0, 0), 1.9}, {Vector3d(0.4, 0, 0), 1.9}};
     }
@@ -211,69 +179,17 @@ TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
   EXPECT_GT(alarms, effort(10, 3));
 }
 
-// The answer from its parts, by trying all pairs of spheres.
-bool collides_by_parts(const CoveredMesh& a, const Pose& world_from_a, const CoveredMesh& b,
-                       const Pose& world_from_b) {
-  bool touch = false;
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(a.cover().spheres().size()); ++i) {
-    for (std::int32_t j = 0; j < static_cast<std::int32_t>(b.cover().spheres().size()); ++j) {
-      if (!spheres_touch(a.cover(), i, world_from_a, b.cover(), j, world_from_b)) continue;
-      touch = true;
-      if (triangles_touch(a, i, world_from_a, b, j, world_from_b)) return true;
-    }
-  }
-  return touch && contains_component(a, world_from_a, b, world_from_b);
-}
-
-TEST(MeshContact, IsTheSumOfItsParts) {
-  Random random(5);
-  const Vector3d half(0.5, 0.4, 0.3);
-  const CoveredMesh box = solid_covered(box_mesh(half), half, 4);
-  int hits = 0, alarms = 0;
-  for (int i = 0; i < 400; ++i) {
-    const CoveredMesh other = surface_covered(random_triangles(random, 6, 1.0, 0.2), 1);
-    const Pose world_from_box = random.pose(1.0);
-    const Pose world_from_other = random.pose(1.0);
-    const bool hit = collides(box, world_from_box, other, world_from_other);
-    ASSERT_EQ(hit, collides_by_parts(box, world_from_box, other, world_from_other));
-    hits += hit;
-    alarms += !hit && collides(box.cover(), world_from_box, other.cover(), world_from_other);
-  }
-  EXPECT_GT(hits, 50);
-  EXPECT_GT(alarms, 10);
-}
-
-TEST(MeshContact, ABodyInsideAnotherCollides) {
-  Random random(6);
-  const Vector3d large = Vector3d::Constant(1.0), small = Vector3d::Constant(0.2);
-  const CoveredMesh outer = solid_covered(box_mesh(large), large, 3);
-  const CoveredMesh inner = surface_covered(box_mesh(small), 0);
-  EXPECT_TRUE(outer.is_closed());
-  for (int i = 0; i < 2000; ++i) {
-    const Pose world_from_outer = random.pose(10.0);
-    // A sphere around the small box stays within the large one, or goes beyond it for sure.
-    Vector3d center = random.point(0.6);
-    const bool inside = random.whole(0, 1) == 0;
-    if (!inside) center[random.whole(0, 2)] = random.whole(0, 1) == 0 ? 1.4 : -1.4;
-    const Pose world_from_inner(random.quaternion(), world_from_outer * center);
-    ASSERT_EQ(collides(outer, world_from_outer, inner, world_from_inner), inside) << i;
-    ASSERT_EQ(collides(inner, world_from_inner, outer, world_from_outer), inside) << i;
-  }
-}
-
 // What is inside, around a small box that is moved along x.
 TEST(MeshContact, TheInsideIsThatOfClosedShells) {
   const Vector3d large = Vector3d::Constant(1.0);
-  const TriangleMesh box = box_mesh(large);
-  TriangleMesh hollow = box, inside_out, double_sided = box, open = box, flapped = box;
-  add_box(hollow, Vector3d::Constant(0.6), true);
-  add_box(inside_out, large, true);
-  add_box(double_sided, large, true);
+  const TriangleMesh box = centered_box(large);
+  const TriangleMesh hollow = joined(box, inverted(centered_box(Vector3d::Constant(0.6))));
+  const TriangleMesh inside_out = inverted(box), double_sided = joined(box, inverted(box));
+  const TriangleMesh flapped = joined(box, {{{0, 0, .5}, {.1, 0, .5}, {0, .1, .5}}, {{0, 1, 2}}});
+  TriangleMesh open = box;
   open.triangles.pop_back();
-  flapped.vertices.insert(flapped.vertices.end(), {{0, 0, .5}, {.1, 0, .5}, {0, .1, .5}});
-  flapped.triangles.emplace_back(36, 37, 38);
-  TriangleMesh two = box_mesh(Vector3d::Constant(0.1));
-  add_box(two, Vector3d::Constant(0.1), false, {5, 0, 0});
+  const Vector3d tenth = Vector3d::Constant(0.1);
+  const TriangleMesh two = joined(centered_box(tenth), centered_box(tenth, {5, 0, 0}));
   struct Case {
     const char* name;
     const TriangleMesh& outer;
@@ -291,7 +207,7 @@ TEST(MeshContact, TheInsideIsThatOfClosedShells) {
     EXPECT_EQ(outer.is_closed(), is_closed);
     // The rays of the smallest ones, from the centre, run through edges and corners.
     for (const double size : {0.1, 1e-3, 1e-9, 1e-15}) {
-      const CoveredMesh inner = surface_covered(box_mesh(Vector3d::Constant(size)), 0);
+      const CoveredMesh inner = surface_covered(centered_box(Vector3d::Constant(size)), 0);
       EXPECT_EQ(collides(outer, Pose(), inner, Pose()), has_inside) << size;
       EXPECT_TRUE(collides(outer, Pose(), inner, Pose::from_translation({-1, 0, 0})));
       EXPECT_FALSE(collides(outer, Pose(), inner, Pose::from_translation({1.3, 0, 0})));
@@ -404,7 +320,7 @@ std::string refusal(const TriangleMesh& mesh, std::vector<Sphere> spheres) {
 }
 
 TEST(MeshContact, RefusesWhatDoesNotCover) {
-  const TriangleMesh box = box_mesh(Vector3d::Constant(1.0));
+  const TriangleMesh box = centered_box(Vector3d::Constant(1.0));
   std::vector<Sphere> spheres = surface_spheres(box, 2);
   EXPECT_EQ(refusal(box, spheres), "");
   // A hole in the middle of a triangle (two spheres have the same hypotenuse as diameter), and

@@ -5,7 +5,6 @@
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"
 #include "collide/meshes/mesh_tree.h"
-#include "collide/meshes/packed_mesh.h"
 #include "collide/meshes/triangle_leaves.h"
 #include "collide/search/relative_pose.h"
 #include "spheretree/build.h"
@@ -19,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 namespace spherule::test {
 namespace {
@@ -72,19 +70,6 @@ TriangleMesh mesh_of(const std::vector<Triangle>& triangles) {
     mesh.triangles.emplace_back(first, first + 1, first + 2);
   }
   return mesh;
-}
-
-// What all pairs say.
-bool any_pair_intersects(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,
-                         const Pose& world_from_b) {
-  const auto spheres = static_cast<std::int32_t>(a.spheres().size());
-  const auto triangles = static_cast<std::int32_t>(b.tree().spheres().size());
-  for (std::int32_t i = 0; i < spheres; ++i) {
-    for (std::int32_t j = 0; j < triangles; ++j) {
-      if (intersects_triangle(a, i, world_from_a, b, j, world_from_b)) return true;
-    }
-  }
-  return false;
 }
 
 TEST(MeshSearch, MissesNoContactWithOneTriangleOnAnyInstructionSet) {
@@ -171,46 +156,77 @@ TEST(MeshSearch, TheAxesFindApartWhatIsClearlyApart) {
   EXPECT_GT(needed, effort(500, 125));
 }
 
+// Spheres anywhere, and one beyond the first corner of every triangle, seen from the middle of the
+// leaf's sphere, so that the gaps to the triangle and to that are the same: 1e-16 to 1e-9 of the
+// size, of both signs. There the pads decide, and least of all may the trees (G7).
+std::vector<Sphere> spheres_among(Random& random, const MeshTree& mesh, const Pose& a_from_b,
+                                  double size) {
+  std::vector<Sphere> spheres = random_spheres(random, random.whole(1, 60), 1.0, 0.15);
+  const bool are_points = random.chance(0.1);
+  for (Sphere& s : spheres) s = {size * s.center, are_points ? 0.0 : size * s.radius};
+  const int triangles = random.coin() ? static_cast<int>(mesh.tree().spheres().size()) : 1;
+  for (int i = 0; i < triangles; ++i) {
+    const Sphere leaf = mesh.tree().spheres()[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d& corner = mesh.triangle(i)[0];
+    const double gap = (random.chance(0.25) ? -1.0 : 1.0) * random.magnitude(1e-16, 1e-9);
+    const double radius = random.between(0.01, 0.05);
+    const Eigen::Vector3d outwards = (corner - leaf.center).stableNormalized();
+    spheres.push_back({a_from_b * (corner + size * (radius + gap) * outwards), size * radius});
+  }
+  return spheres;
+}
+
 TEST(MeshSearch, AnswersAsAllPairsDo) {
   Random random(13);
   int hits = 0;
-  for (int i = 0; i < effort(600, 150); ++i) {
+  std::size_t pairs = 0;
+  for (int i = 0; i < effort(400, 100); ++i) {
     const double size = std::pow(10.0, random.whole(-3, 3));
+    const double spread = random.chance(0.3) ? 10.0 * size : size;
     std::vector<Triangle> triangles;
-    const int count = random.whole(1, 80);
+    const int count = i % 20 == 0 ? random.whole(100, 700) : random.whole(1, 60);
     for (int k = 0; k < count; ++k) {
       Triangle t = random_triangle(random, 0.2 * size);
-      const Eigen::Vector3d shift = random.point(size);
+      const Eigen::Vector3d shift = random.point(spread);
       for (Eigen::Vector3d& corner : t) corner += shift;
       triangles.push_back(t);
     }
     const MeshTree b(mesh_of(triangles));
-    const int branching = i % 10 == 0 ? 16 : 8;
-    std::vector<Sphere> spheres = random_spheres(random, random.whole(1, 60), 1.0, 0.15);
-    for (Sphere& s : spheres) s = {size * s.center, i % 7 == 0 ? 0.0 : size * s.radius};
     const Pose world_from_a = random.pose(size);
-    const Pose world_from_b(random.quaternion(),
-                            world_from_a.translation() + random.point(1.8 * size));
-    // The pose of a or b moves until they nearly touch: one sphere is given the exact distance.
-    Real nearest = 1e300;
-    Sphere& changed = spheres.front();
-    for (const Triangle& t : triangles) {
-      nearest = std::min(nearest, exact_distance(changed.center, world_from_a, t, world_from_b));
+    const Eigen::Quaterniond turned = random.quaternion();
+    const Pose world_from_b(turned, world_from_a.translation() + random.point(1.8 * size));
+    const std::vector<Sphere> spheres =
+        spheres_among(random, b, world_from_a.inverse() * world_from_b, size);
+    std::vector<SpherePair> expected;
+    for (const int branching : {2, 8, 16}) {
+      const SphereTree a = build_tree(spheres, {.branching = branching});
+      const internal::RelativePose pose(a, world_from_a, b.tree(), world_from_b);
+      for (std::int32_t j = 0; branching == 2 && j < static_cast<int>(spheres.size()); ++j) {
+        for (std::int32_t k = 0; k < count; ++k) {
+          if (!intersects_triangle(a, j, world_from_a, b, k, world_from_b)) continue;
+          expected.push_back({j, k});
+          // What is accepted must be a pair that the node tests are proved to keep.
+          ASSERT_TRUE(pose.touches(spheres[static_cast<std::size_t>(j)],
+                                   b.tree().spheres()[static_cast<std::size_t>(k)]));
+        }
+      }
+      const CollisionResult result = collide(a, world_from_a, b, world_from_b);
+      ASSERT_TRUE(result.complete);
+      ASSERT_EQ(result.pairs, expected) << "case " << i << ", branching " << branching;
+      ASSERT_EQ(collides(a, world_from_a, b, world_from_b), !expected.empty());
+      for (const InstructionSet set : instruction_sets()) {
+        ASSERT_EQ(
+            internal::collides_by(internal::mesh_kernel_for(set), a, world_from_a, b, world_from_b),
+            !expected.empty())
+            << "case " << i;
+      }
     }
-    changed.radius = nearest.convert_to<double>() * (1.0 + random_gap(random));
-    const SphereTree a = build_tree(spheres, {.branching = branching});
-    const bool expected = any_pair_intersects(a, world_from_a, b, world_from_b);
-    ASSERT_EQ(collides(a, world_from_a, b, world_from_b), expected);
-    for (const InstructionSet set : instruction_sets()) {
-      ASSERT_EQ(
-          internal::collides_by(internal::mesh_kernel_for(set), a, world_from_a, b, world_from_b),
-          expected)
-          << "case " << i;
-    }
-    hits += expected;
+    hits += expected.empty() ? 0 : 1;
+    pairs += expected.size();
   }
   EXPECT_GT(hits, effort(100, 25));
-  EXPECT_LT(hits, 580);
+  EXPECT_LT(hits, effort(400, 100));
+  EXPECT_GT(pairs, effort(1000u, 250u));
 }
 
 // A triangle that is said to be so deep in a sphere has a point so far from its surface.
@@ -239,85 +255,6 @@ TEST(MeshSearch, TheDepthInASphereIsNoMoreThanItIs) {
   }
   EXPECT_GT(deep, 1500);
   EXPECT_GT(nearly, 5000);
-}
-
-TEST(MeshSearch, TheBoxesHoldEveryTriangleOnce) {
-  Random random(14);
-  for (const int count : {1, 7, 8, 9, 64, 65, 700}) {
-    std::vector<Triangle> triangles;
-    for (int k = 0; k < count; ++k) triangles.push_back(random_triangle(random, 1.0));
-    const MeshTree tree(mesh_of(triangles));
-    const internal::MeshView view = tree.packed().view();
-    std::set<std::int32_t> seen;
-    const auto holds = [](const float* low, const float* high, std::size_t stride,
-                          const Eigen::Vector3d& p) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double x = p[static_cast<Eigen::Index>(k)];
-        if (static_cast<double>(low[k * stride]) > x || static_cast<double>(high[k * stride]) < x) {
-          return false;
-        }
-      }
-      return true;
-    };
-    // Every corner below a node, as the boxes on the way down have to hold them.
-    const auto visit = [&](const auto& self, std::int32_t at) -> std::vector<Eigen::Vector3d> {
-      std::vector<Eigen::Vector3d> below;
-      if (at < 0) {
-        const internal::MeshBlock& block = view.blocks[~at];
-        for (int lane = 0; lane < internal::MeshBlock::kWidth; ++lane) {
-          if (block.corner[0][0][lane] > 1e18F) continue;
-          EXPECT_TRUE(seen.insert(block.triangle[lane]).second);
-          for (const Eigen::Vector3d& corner : tree.triangle(block.triangle[lane])) {
-            EXPECT_TRUE(holds(block.around.low, block.around.high, 1, corner));
-            below.push_back(corner);
-          }
-        }
-        return below;
-      }
-      const internal::MeshNode& node = view.nodes[at];
-      for (std::size_t lane = 0; lane < internal::MeshNode::kWidth; ++lane) {
-        if (node.low[0][lane] > 1e18F) continue;
-        for (const Eigen::Vector3d& corner : self(self, node.child[lane])) {
-          EXPECT_TRUE(holds(&node.low[0][lane], &node.high[0][lane], 8, corner));
-          EXPECT_TRUE(holds(node.around.low, node.around.high, 1, corner));
-          below.push_back(corner);
-        }
-      }
-      return below;
-    };
-    EXPECT_EQ(visit(visit, 0).size(), 3 * triangles.size());
-    EXPECT_EQ(seen.size(), triangles.size());
-  }
-}
-
-// Spheres against triangles, with the distance of point and triangle in 100 digits as the oracle.
-
-TEST(MeshTree, FindsThePairsOfAllPairs) {
-  Random random(2);
-  int hits = 0;
-  for (int i = 0; i < effort(20, 6); ++i) {
-    const SphereTree a = build_tree(random_spheres(random, 30, 1.0, 0.2));
-    const MeshTree b(random_triangles(random, 20, 0.5, 0.5));
-    const Pose world_from_a = random.pose(0.5);
-    const Pose world_from_b = random.pose(0.5);
-    const CollisionResult result = collide(a, world_from_a, b, world_from_b);
-    ASSERT_TRUE(result.complete);
-    ASSERT_TRUE(std::is_sorted(result.pairs.begin(), result.pairs.end()));
-    ASSERT_EQ(collides(a, world_from_a, b, world_from_b), result.verdict == Verdict::kCollision);
-    for (int j = 0; j < 30; ++j) {
-      for (int k = 0; k < 20; ++k) {
-        const bool found =
-            std::binary_search(result.pairs.begin(), result.pairs.end(), SpherePair{j, k});
-        const Sphere& sphere = a.spheres()[static_cast<std::size_t>(j)];
-        const Real gap = exact_distance(sphere.center, world_from_a, b.triangle(k), world_from_b) -
-                         sphere.radius;
-        ASSERT_EQ(found, gap <= 0) << gap;
-        ASSERT_LE(result.distance_lower_bound, std::max(Real(0), gap));
-        hits += found;
-      }
-    }
-  }
-  EXPECT_GT(hits, effort(30, 8));
 }
 
 TEST(MeshTree, RefusesAMeshItCannotUse) {

@@ -8,6 +8,7 @@
 #include "collide/search/relative_pose.h"
 #include "collide/solids/primitive.h"
 #include "spheretree/build.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"
 #include "tests/support/random_scene.h"
@@ -21,6 +22,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -33,12 +35,7 @@ using Eigen::Vector3d;
 // From a placed sphere to a placed shape: negative where it has to move by as much to part from it.
 Real gap_of(const Sphere& sphere, const Pose& world_from_sphere, const SphereTree& tree,
             const Pose& world_from_tree) {
-  Real least = std::numeric_limits<double>::infinity();
-  for (const Sphere& other : tree.spheres()) {
-    least =
-        std::min(least, PlacedSphereSets{sphere, other, world_from_sphere, world_from_tree}.gap());
-  }
-  return least;
+  return exact_gap({std::span(&sphere, 1), world_from_sphere}, {tree.spheres(), world_from_tree});
 }
 Real gap_of(const Sphere& sphere, const Pose& world_from_sphere, const Primitive& solid,
             const Pose& world_from_solid) {
@@ -83,6 +80,17 @@ double slack_of(const SphereTree& tree, const Pose& world_from_tree, const Solid
          4e-16 * solid.inflation() + 1e-14 * clearance;
 }
 
+// How far the bounds of a distance may lie apart, but for the loss of a scene.
+double width_of(const SphereTree& a, const Pose& world_from_a, const SphereTree& b,
+                const Pose& world_from_b) {
+  return 2.5 * internal::RelativePose(a, world_from_a, b, world_from_b).gap_error();
+}
+template <class Solid>
+double width_of(const SphereTree& tree, const Pose& world_from_tree, const Solid& solid,
+                const Pose& world_from_solid) {
+  return 2.0 * slack_of(tree, world_from_tree, solid, world_from_solid, 0.0);
+}
+
 template <class Shape>
 struct Scene {
   SphereTree tree;
@@ -109,6 +117,7 @@ struct Scene {
   double slack(double clearance = 0.0) const {
     return slack_of(tree, world_from_tree, shape, world_from_shape, clearance);
   }
+  double width() const { return width_of(tree, world_from_tree, shape, world_from_shape); }
   Real gap(const Sphere& sphere) const {
     return gap_of(sphere, world_from_tree, shape, world_from_shape);
   }
@@ -132,11 +141,19 @@ int random_branching(Random& random) {
 
 // --- two trees ---
 
+// Up to 20, scattered or of any family.
+std::vector<Sphere> few_spheres(Random& random, double size) {
+  const int count = random.whole(1, 20);
+  if (!random.chance(0.2)) return random_spheres(random, count, size, 0.3 * size);
+  std::vector<Family> families = sphere_families(static_cast<std::size_t>(count), random.bits());
+  return families[random.index(families.size())].spheres;
+}
+
 // Deep in each other, or with two spheres as near as `gap` and all small. Some spheres stand twice.
 Scene<SphereTree> near_contact(Random& random, const SphereTree*) {
   const double size = std::ldexp(1.0, random.whole(-20, 20));
-  std::vector<Sphere> a = random_spheres(random, random.whole(1, 20), size, 0.3 * size);
-  std::vector<Sphere> b = random_spheres(random, random.whole(1, 20), size, 0.3 * size);
+  std::vector<Sphere> a = few_spheres(random, size);
+  std::vector<Sphere> b = few_spheres(random, size);
   if (random.whole(0, 4) == 0) a.push_back(a.front());
   const Pose world_from_a = random.pose(size);
   Pose world_from_b(random.quaternion(), world_from_a.translation() + random.point(1.5 * size));
@@ -302,9 +319,9 @@ using Shapes = ::testing::Types<SphereTree, Primitive, SolidMesh>;
 TYPED_TEST_SUITE(Queries, Shapes);
 
 TYPED_TEST(Queries, NeitherMissNorInventAContact) {
-  Random random(1);
+  Random random(seeded(1));
   int touching = 0, slack_needed = 0, free = 0;
-  for (int i = 0; i < effort(1000, 100); ++i) {
+  for (int i = 0; i < scaled(1500, 100); ++i) {
     const Scene<TypeParam> scene = this->scene(random);
     const Real gap = scene.gap();
     const bool hit = scene.collides();
@@ -321,9 +338,9 @@ TYPED_TEST(Queries, NeitherMissNorInventAContact) {
 }
 
 TYPED_TEST(Queries, KeepAClearance) {
-  Random random(2);
+  Random random(seeded(2));
   int counts[2] = {};
-  for (int i = 0; i < effort(300, 40); ++i) {
+  for (int i = 0; i < scaled(300, 40); ++i) {
     const Scene<TypeParam> scene = this->scene(random);
     const Real exact = scene.gap();
     const double gap = std::max(0.0, exact.convert_to<double>());
@@ -344,15 +361,15 @@ TYPED_TEST(Queries, KeepAClearance) {
 }
 
 TYPED_TEST(Queries, BoundTheDistance) {
-  Random random(3);
+  Random random(seeded(3));
   int apart = 0, overlapping = 0;
-  for (int i = 0; i < effort(250, 40); ++i) {
+  for (int i = 0; i < scaled(250, 40); ++i) {
     const Scene<TypeParam> scene = this->scene(random);
     const Real exact = std::max(Real(0), scene.gap());
     const DistanceResult result = scene.distance();
     ASSERT_LE(result.lower, exact) << i;
     ASSERT_GE(result.upper, exact) << i;
-    ASSERT_LE(result.upper - result.lower, 3.0 * scene.slack() + 1e-14 * result.upper + scene.loss);
+    ASSERT_LE(result.upper - result.lower, scene.width() + 1e-14 * result.upper + scene.loss) << i;
     ASSERT_TRUE(!scene.collides() || result.lower == 0.0);
     for (const DistanceRequest& request :
          {DistanceRequest{.tolerance = 0.3 * result.upper},
@@ -371,9 +388,9 @@ TYPED_TEST(Queries, BoundTheDistance) {
 }
 
 TYPED_TEST(Queries, FindTheDeepestContact) {
-  Random random(4);
+  Random random(seeded(4));
   int found = 0;
-  for (int i = 0; i < effort(250, 40); ++i) {
+  for (int i = 0; i < scaled(250, 40); ++i) {
     const Scene<TypeParam> scene = this->scene(random);
     const auto contact = scene.deepest_contact();
     ASSERT_EQ(contact.has_value(), scene.collides());
@@ -407,9 +424,9 @@ TYPED_TEST_SUITE(Pairs, ShapesWithPairs);
 
 // By the exact gaps of single spheres, and the same for every tree.
 TYPED_TEST(Pairs, AreThoseOfSingleSpheres) {
-  Random random(5);
+  Random random(seeded(5));
   int several = 0;
-  for (int i = 0; i < effort(300, 40); ++i) {
+  for (int i = 0; i < scaled(300, 40); ++i) {
     const Scene<TypeParam> scene = this->scene(random);
     const CollisionResult result = scene.collide();
     ASSERT_TRUE(result.complete);
@@ -437,9 +454,9 @@ TYPED_TEST(Pairs, AreThoseOfSingleSpheres) {
 }
 
 TYPED_TEST(Pairs, WithinLimitsAreSomeOfThemAndNeverFree) {
-  Random random(6);
+  Random random(seeded(6));
   int unknown = 0, limited = 0;
-  for (int i = 0; i < effort(100, 20); ++i) {
+  for (int i = 0; i < scaled(100, 20); ++i) {
     const Scene<TypeParam> scene = this->scene(random);
     const CollisionResult full = scene.collide();
     const auto expect_part = [&](const CollisionResult& part) {
@@ -475,36 +492,47 @@ TYPED_TEST(Pairs, WithinLimitsAreSomeOfThemAndNeverFree) {
 
 // --- trees alone ---
 
+// Beside every second sphere one of the other set, at a gap of a share of the slack: there the pads
+// decide, and least of all may the trees (G7).
 TEST(Trees, FindExactlyThePairsThatTheCanonicalTestAccepts) {
-  Random random(7);
-  std::size_t pairs = 0;
-  for (int i = 0; i < effort(300, 60); ++i) {
+  Random random(seeded(7));
+  std::size_t pairs = 0, close = 0;
+  for (int i = 0; i < scaled(300, 60); ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
-    const auto tree = [&] {
-      const int count = random.whole(1, 150);
-      const double largest_radius = size * random.between(0.0, 4.0) / std::sqrt(count);
-      return build_tree(random_spheres(random, count, size, largest_radius),
-                        {.branching = random_branching(random)});
-    };
-    const SphereTree a = tree(), b = tree();
+    const int count = random.whole(1, 120);
+    const double largest_radius = size * random.between(0.0, 4.0) / std::sqrt(count);
+    const std::vector<Sphere> first = random_spheres(random, count, size, largest_radius);
+    std::vector<Sphere> second = random_spheres(random, count, size, largest_radius);
     const Pose world_from_a = random.pose(size), world_from_b = random.pose(1.5 * size);
-    const internal::RelativePose pose(a, world_from_a, b, world_from_b);
-    std::vector<SpherePair> expected;
-    for (std::int32_t j = 0; j < static_cast<std::int32_t>(a.spheres().size()); ++j) {
-      for (std::int32_t k = 0; k < static_cast<std::int32_t>(b.spheres().size()); ++k) {
-        const bool touch = pose.touches(a.spheres()[static_cast<std::size_t>(j)],
-                                        b.spheres()[static_cast<std::size_t>(k)]);
-        if (touch) expected.push_back({j, k});
-      }
+    for (std::size_t k = 0; k < first.size(); k += 2) {
+      const double gap = size * random.between(-1e-13, 4e-13);
+      const double way = first[k].radius + second[k].radius + gap;
+      second[k].center = world_from_b.inverse() *
+                         (world_from_a * Vector3d(first[k].center + way * random.direction()));
     }
-    ASSERT_EQ(collide(a, world_from_a, b, world_from_b).pairs, expected);
-    std::vector<SpherePair> swapped = collide(b, world_from_b, a, world_from_a).pairs;
-    for (SpherePair& pair : swapped) std::swap(pair.a, pair.b);
-    std::sort(swapped.begin(), swapped.end());
-    ASSERT_EQ(swapped, expected);
+    std::vector<SpherePair> expected;
+    for (const int branching : {2, 8, 16}) {
+      const SphereTree a = build_tree(first, {.branching = branching});
+      const SphereTree b = build_tree(second, {.branching = branching});
+      const internal::RelativePose pose(a, world_from_a, b, world_from_b);
+      for (std::int32_t j = 0; branching == 2 && j < count; ++j) {
+        for (std::int32_t k = 0; k < count; ++k) {
+          const Sphere &of_a = first[static_cast<std::size_t>(j)],
+                       &of_b = second[static_cast<std::size_t>(k)];
+          if (pose.touches(of_a, of_b)) expected.push_back({j, k});
+          close += std::abs(pose.gap(of_a, of_b)) < 4e-13 * size;
+        }
+      }
+      ASSERT_EQ(collide(a, world_from_a, b, world_from_b).pairs, expected) << branching;
+      std::vector<SpherePair> swapped = collide(b, world_from_b, a, world_from_a).pairs;
+      for (SpherePair& pair : swapped) std::swap(pair.a, pair.b);
+      std::sort(swapped.begin(), swapped.end());
+      ASSERT_EQ(swapped, expected) << branching;
+    }
     pairs += expected.size();
   }
   EXPECT_GT(pairs, effort(1000u, 200u));
+  EXPECT_GT(close, effort(1000u, 200u));
 }
 
 TEST(Trees, HaveOneDeepestContactWhateverTheirShape) {
@@ -541,30 +569,6 @@ TEST(Trees, OfOneSphereCostOneTest) {
   EXPECT_EQ(distance(sphere, Pose(), sphere, Pose()).upper, 0.0);
 }
 
-TEST(Trees, WithinIsWhatSomePairSays) {
-  Random random(9);
-  int counts[2] = {};
-  for (int i = 0; i < effort(200, 40); ++i) {
-    const Scene<SphereTree> scene = near_contact(random, static_cast<const SphereTree*>(nullptr));
-    const double upper = scene.distance().upper;
-    for (const double factor : {0.0, 0.5, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 1.5}) {
-      bool any = false;
-      for (std::size_t j = 0; j < scene.tree.spheres().size(); ++j) {
-        for (std::size_t k = 0; k < scene.shape.spheres().size(); ++k) {
-          any =
-              any || spheres_within(scene.tree, static_cast<std::int32_t>(j), scene.world_from_tree,
-                                    scene.shape, static_cast<std::int32_t>(k),
-                                    scene.world_from_shape, upper * factor);
-        }
-      }
-      ASSERT_EQ(scene.within(upper * factor), any);
-      ++counts[any];
-    }
-  }
-  EXPECT_GT(counts[0], 20);
-  EXPECT_GT(counts[1], 20);
-}
-
 // --- primitives alone ---
 
 TEST(Primitives, OfEquallyDeepSpheresTheFirstIsTheDeepest) {
@@ -572,21 +576,6 @@ TEST(Primitives, OfEquallyDeepSpheresTheFirstIsTheDeepest) {
     std::vector<Sphere> spheres = {{{0.0, 0.0, 9.0}, 1.0}};
     for (int i = 0; i < 9; ++i) spheres.push_back({{side * i, 0.0, 0.5}, 1.0});
     EXPECT_EQ(deepest_contact(build_tree(spheres), Pose(), HalfSpace{}, Pose())->sphere, 1);
-  }
-}
-
-TEST(Primitives, OneWhollyInsideTheOther) {
-  const auto sphere = [](double radius) {
-    return build_tree(std::vector<Sphere>{{{0.1, 0.2, 0.3}, radius}});
-  };
-  for (const double scale : {1e-6, 1.0, 1e6}) {
-    for (const Primitive& solid : {Primitive(Box{{scale, 2 * scale, 3 * scale}}),
-                                   Primitive(SolidSphere{scale}), Primitive(Cylinder{scale, scale}),
-                                   Primitive(Capsule{scale, 0.0}), Primitive(HalfSpace{})}) {
-      const Pose under = Pose::from_translation({0.1, 0.2, 0.3 + 2e-8});
-      EXPECT_TRUE(collides(sphere(1e-7), Pose(), solid, under));
-      EXPECT_TRUE(collides(sphere(1e7), Pose(), solid, under));
-    }
   }
 }
 

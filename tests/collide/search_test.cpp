@@ -9,6 +9,7 @@
 #include "collide/search/traversal.h"
 #include "spheretree/build.h"
 #include "spheretree/check.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/spheres.h"
 #include "tests/support/random.h"
@@ -310,26 +311,38 @@ class Walk {
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
 };
 
+// On walks, and now and then straight towards contact by steps that shrink with the gap, so that
+// the memory is queried at its limit.
 TEST(PairCache, AnswersAsCollidesDoes) {
-  Random random(1);
-  std::uint64_t free = 0;
-  std::uint64_t hits = 0;
-  std::uint64_t queries = 0;
-  int colliding = 0;
-  for (int i = 0; i < 60; ++i) {
+  Random random(seeded(1));
+  std::uint64_t free = 0, hits = 0;
+  int colliding = 0, close = 0;
+  for (int i = 0; i < scaled(60); ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
-    const SphereTree a = build_tree(random_spheres(random, 60, size, 0.1 * size));
+    const SphereTree a = build_tree(random_spheres(random, i % 4 == 0 ? 1 : 60, size, 0.1 * size));
     const SphereTree b = build_tree(random_spheres(random, 60, 0.5 * size, 0.05 * size));
     PairCache cache(a, b);
     PairCache swapped(b, a);
     Walk walk_a(random, size, size * std::ldexp(1.0, -random.whole(0, 12)));
     Walk walk_b(random, 3.0 * size, size * std::ldexp(1.0, -random.whole(0, 12)));
-    const Eigen::Vector3d far = random.point(1e6 * size * random.whole(0, 1));
+    const Vector3d far = random.point(1e6 * size * random.whole(0, 1));
+    Pose pose_a, pose_b;
     for (int k = 0; k < 1000; ++k) {
-      Pose pose_a = walk_a.next();
-      Pose pose_b = walk_b.next();
-      pose_a = Pose(pose_a.rotation(), pose_a.translation() + far);
-      pose_b = Pose(pose_b.rotation(), pose_b.translation() + far);
+      DistanceResult gap;
+      if (k % 100 > 0 && k % 100 < 40) gap = distance(a, pose_a, b, pose_b);
+      if (gap.upper > 0.0 && std::isfinite(gap.upper)) {
+        const auto center = [](const SphereTree& tree, std::int32_t index, const Pose& pose) {
+          return Vector3d(pose * tree.spheres()[static_cast<std::size_t>(index)].center);
+        };
+        const Vector3d way = center(a, gap.nearest.a, pose_a) - center(b, gap.nearest.b, pose_b);
+        pose_b = Pose(pose_b.rotation(), pose_b.translation() + gap.upper * way.normalized() *
+                                                                    random.between(0.3, 1.0));
+        close += gap.upper < 1e-9 * size;
+      } else {
+        const Pose next_a = walk_a.next(), next_b = walk_b.next();
+        pose_a = Pose(next_a.rotation(), next_a.translation() + far);
+        pose_b = Pose(next_b.rotation(), next_b.translation() + far);
+      }
       const bool truth = collides(a, pose_a, b, pose_b);
       ASSERT_EQ(cache.collides(pose_a, pose_b), truth);
       ASSERT_EQ(swapped.collides(pose_b, pose_a), truth);
@@ -337,34 +350,15 @@ TEST(PairCache, AnswersAsCollidesDoes) {
     }
     free += cache.counts().free_from_memory;
     hits += cache.counts().collisions_from_memory;
-    queries += cache.counts().queries;
   }
-  EXPECT_EQ(queries, 60'000u);
-  EXPECT_GT(colliding, 5000);
-  EXPECT_GT(free, 5000u);
-  EXPECT_GT(hits, 5000u);
-}
-
-// Towards contact by steps that shrink with the gap, so that the memory is queried at its limit.
-TEST(PairCache, IsNotFooledNextToContact) {
-  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
-  Random random(2);
-  for (int i = 0; i < 300; ++i) {
-    const Eigen::Vector3d direction = random.point(1.0).normalized();
-    PairCache cache(sphere, sphere);
-    double gap = 1.0;
-    for (int k = 0; k < 80; ++k) {
-      const Pose pose(random.quaternion(), (2.0 + gap) * direction);
-      ASSERT_EQ(cache.collides(Pose(), pose), collides(sphere, Pose(), sphere, pose)) << gap;
-      gap *= random.between(0.3, 0.9);
-    }
-    const Pose touching = Pose::from_translation(2.0 * direction);
-    ASSERT_EQ(cache.collides(Pose(), touching), collides(sphere, Pose(), sphere, touching));
-  }
+  EXPECT_GT(colliding, 3000);
+  EXPECT_GT(close, 500);
+  EXPECT_GT(free, 3000u);
+  EXPECT_GT(hits, 1500u);
 }
 
 TEST(PairCache, ARestingPairIsSearchedOnce) {
-  const SphereTree sphere = build_tree(std::vector<Sphere>{{{0.0, 0.0, 0.0}, 1.0}});
+  const SphereTree sphere = tree_of({Vector3d::Zero(), 1.0});
   PairCache cache(sphere, sphere);
   const Pose near = Pose::from_translation({2.5, 0.0, 0.0});
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(cache.collides(Pose(), near));

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/collide.h"
-#include "collide/meshes/mesh_tree.h"
-#include "collide/meshes/triangle_leaves.h"
 #include "collide/search/box_gap.h"
 #include "collide/search/nearest_first.h"
-#include "collide/search/queries.h"
 #include "collide/search/relative_pose.h"
-#include "collide/search/traversal.h"
 #include "spheretree/build.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/spheres.h"
@@ -258,13 +254,7 @@ struct BoxScene {
   }
 
   Real exact_gap() const {
-    Real least = std::numeric_limits<double>::infinity();
-    for (const Sphere& of_a : a.spheres()) {
-      for (const Sphere& of_b : b.spheres()) {
-        least = std::min(least, PlacedSphereSets{of_a, of_b, world_from_a, world_from_b}.gap());
-      }
-    }
-    return least;
+    return test::exact_gap({a.spheres(), world_from_a}, {b.spheres(), world_from_b});
   }
 
   // By the canonical test of all pairs.
@@ -409,128 +399,6 @@ TEST(BoxGap, HoldsForTheSmallestAndTheLargest) {
       }
     }
   }
-}
-
-// Which pairs are reported does not depend on the trees above them (G7), and least of all near
-// contact, where the pads decide: spheres against spheres, against triangles, and against needles,
-// whose distance in double is loose.
-
-// What a search without any pruning reports.
-template <class LeafTest>
-std::vector<SpherePair> pairs_without_pruning(const SphereTree& a, const SphereTree& b,
-                                              const internal::RelativePose& pose,
-                                              const LeafTest& test) {
-  const CollisionRequest request;
-  CollisionResult result;
-  internal::CollectPairs query(test, a, b, request, result);
-  EXPECT_TRUE(internal::traverse_exhaustively(a, b, internal::TreePair(a, b, pose), query));
-  std::sort(result.pairs.begin(), result.pairs.end());
-  return result.pairs;
-}
-
-constexpr int kSpheres = 24;
-
-TEST(SamePairs, OfSpheresForEveryTree) {
-  Random random(2);
-  std::size_t pairs = 0;
-  for (int i = 0; i < 400; ++i) {
-    const std::vector<Sphere> first = random_spheres(random, kSpheres, 10.0, 0.1);
-    const Eigen::Quaterniond turned = random.quaternion();
-    const Pose world_from_b(turned, random.point(1.0));
-    const Pose world_from_a;
-    const Pose b_from_a = world_from_b.inverse();
-    // Beside each sphere one of the other set, at a gap of a share of the slack.
-    std::vector<Sphere> second;
-    for (const Sphere& sphere : first) {
-      const double radius = random.between(0.01, 0.1);
-      const double gap = random.between(-1e-13, 4e-13);
-      const Eigen::Vector3d direction = random.point(1.0).normalized();
-      second.push_back(
-          {b_from_a * (sphere.center + (sphere.radius + radius + gap) * direction), radius});
-    }
-    std::vector<SpherePair> expected;
-    for (const int branching : {2, 8, 16}) {
-      const SphereTree a = build_tree(first, {.branching = branching});
-      const SphereTree b = build_tree(second, {.branching = branching});
-      const internal::RelativePose pose(a, world_from_a, b, world_from_b);
-      const auto all = pairs_without_pruning(a, b, pose, internal::SphereLeaves(a, b, pose));
-      if (branching == 2) expected = all;
-      ASSERT_EQ(all, expected) << "branching " << branching;
-      ASSERT_EQ(collide(a, world_from_a, b, world_from_b).pairs, expected)
-          << "branching " << branching;
-    }
-    pairs += expected.size();
-  }
-  EXPECT_GT(pairs, 2000u);
-  EXPECT_LT(pairs, 8000u);
-}
-
-constexpr int kTriangles = kSpheres;
-
-// Triangles far apart from each other; needles where `thin` is small.
-TriangleMesh scattered_triangles(Random& random, double thin) {
-  TriangleMesh mesh = random_triangles(random, kTriangles, 1.0, thin);
-  for (std::size_t i = 0; i < mesh.vertices.size(); i += 3) {
-    const Eigen::Vector3d shift = random.point(10.0);
-    for (std::size_t k = i; k < i + 3; ++k) mesh.vertices[k] += shift;
-  }
-  return mesh;
-}
-
-// A sphere beyond the first corner of every triangle, seen from the middle of the leaf's sphere, so
-// that the gaps to the triangle and to the leaf's sphere are the same. Gaps of 1e-16 to 1e-9, of
-// both signs.
-std::vector<Sphere> spheres_at_corners(Random& random, const MeshTree& mesh, const Pose& a_from_b) {
-  std::vector<Sphere> spheres;
-  for (int i = 0; i < kTriangles; ++i) {
-    const Sphere leaf = mesh.tree().spheres()[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d& corner = mesh.triangle(i)[0];
-    const double sign = random.whole(0, 3) == 0 ? -1.0 : 1.0;
-    const double mantissa = random.between(0.1, 1.0);
-    const double gap = sign * mantissa * std::pow(10.0, random.whole(-15, -9));
-    const double radius = random.between(0.01, 0.1);
-    const Eigen::Vector3d outwards = (corner - leaf.center).normalized();
-    spheres.push_back({a_from_b * (corner + (radius + gap) * outwards), radius});
-  }
-  return spheres;
-}
-
-void compare_trees(double thin) {
-  Random random(3);
-  std::size_t pairs = 0;
-  for (int i = 0; i < 100; ++i) {
-    const MeshTree mesh(scattered_triangles(random, thin));
-    const Pose world_from_a(random.quaternion(), Eigen::Vector3d::Zero());
-    const Eigen::Quaterniond turned = random.quaternion();
-    const Pose world_from_b(turned, random.point(1.0));
-    const std::vector<Sphere> spheres =
-        spheres_at_corners(random, mesh, world_from_a.inverse() * world_from_b);
-    std::vector<SpherePair> expected;
-    for (const int branching : {2, 8, 16}) {
-      const SphereTree a = build_tree(spheres, {.branching = branching});
-      const internal::RelativePose pose(a, world_from_a, mesh.tree(), world_from_b);
-      const auto all =
-          pairs_without_pruning(a, mesh.tree(), pose, internal::TriangleLeaves(a, mesh, pose));
-      if (branching == 2) expected = all;
-      ASSERT_EQ(all, expected) << "branching " << branching;
-      const CollisionResult result = collide(a, world_from_a, mesh, world_from_b);
-      ASSERT_TRUE(result.complete);
-      ASSERT_EQ(result.pairs, expected) << "branching " << branching;
-      ASSERT_EQ(collides(a, world_from_a, mesh, world_from_b), !expected.empty());
-      // What is accepted must be a pair that the node tests are proved to keep.
-      for (const SpherePair& pair : all) {
-        ASSERT_TRUE(pose.touches(a.spheres()[static_cast<std::size_t>(pair.a)],
-                                 mesh.tree().spheres()[static_cast<std::size_t>(pair.b)]));
-      }
-    }
-    pairs += expected.size();
-  }
-  EXPECT_GT(pairs, 600u);
-  EXPECT_LT(pairs, 2000u);
-}
-
-TEST(SamePairs, OfTrianglesNeedlesAndDegenerateOnesForEveryTree) {
-  for (const double thin : {1.0, 1e-9, 0.0}) compare_trees(thin);
 }
 
 }  // namespace

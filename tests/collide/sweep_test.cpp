@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Swept queries of random bodies against brute force with thousands of steps.
+// Swept queries of random bodies against the exact motions at thousands of instants.
 #include "collide/sweep.h"
 
 #include "base/error.h"
 #include "collide/collide.h"
 #include "spheretree/build.h"
+#include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/poses.h"
 #include "tests/support/random.h"
@@ -15,8 +16,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace spherule::test {
 namespace {
@@ -45,9 +48,8 @@ bool touch_at(const Body& a, const Body& b, double t, double clearance) {
 
 Body turning_body(const std::vector<Sphere>& spheres, const Pose& start, const Vector3d& axis,
                   double angle, const Vector3d& displacement = Vector3d::Zero(),
-                  const Vector3d& reference = Vector3d::Zero(), int branching = 8) {
-  return {build_tree(spheres, {.branching = branching}),
-          Motion::turning(start, axis, angle, displacement, reference),
+                  const Vector3d& reference = Vector3d::Zero()) {
+  return {build_tree(spheres), Motion::turning(start, axis, angle, displacement, reference),
           LongMotion::turning(start, axis, angle, displacement, reference)};
 }
 
@@ -92,25 +94,27 @@ SweepResult run(const Body& a, const Body& b, const SweepRequest& request = {}) 
   return sweep(a.tree, a.motion, b.tree, b.motion, request);
 }
 
-// Holds a result against `steps` instants; returns the least gap there.
+// Holds a result against `steps` instants and some about `meeting`; returns the least gap there.
 double expect_true(const Body& a, const Body& b, const SweepResult& result, int steps,
-                   const SweepRequest& request = {}) {
+                   const SweepRequest& request = {}, double meeting = 0.0) {
   double least = std::numeric_limits<double>::infinity();
   const bool free = result.verdict == Verdict::kFree;
   EXPECT_TRUE(!free || result.free_until == 1.0);
   EXPECT_GE(result.free_until, 0.0);
-  for (int i = 0; i <= steps; ++i) {
-    const double t = static_cast<double>(i) / steps;
+  const auto sample = [&](double t, bool is_rounded) {
     const double gap = gap_at(a, b, t);
     least = std::min(least, gap);
     if (free || (result.free_until > 0.0 && t <= result.free_until)) {
       EXPECT_GT(gap, request.clearance) << "called free at " << t;
-      EXPECT_TRUE(i % 16 != 0 || !touch_at(a, b, t, request.clearance)) << t;
+      EXPECT_TRUE(!is_rounded || !touch_at(a, b, t, request.clearance)) << t;
     }
+  };
+  for (int i = 0; i <= steps; ++i) sample(static_cast<double>(i) / steps, i % 16 == 0);
+  for (int i = 3; i < 60; i += 3) {
+    sample(std::min(1.0, meeting + std::ldexp(1.0, -i)), false);
+    sample(std::max(0.0, meeting - std::ldexp(1.0, -i)), true);
   }
-  if (result.free_until > 0.0) {
-    EXPECT_GT(gap_at(a, b, result.free_until), request.clearance);
-  }
+  if (result.free_until > 0.0) sample(result.free_until, true);
   if (result.verdict == Verdict::kCollision) {
     const double t = result.contact_at;
     EXPECT_GE(t, result.free_until);
@@ -130,40 +134,90 @@ void expect_same(const SweepResult& one, const SweepResult& other) {
   EXPECT_EQ(one.evaluations, other.evaluations);
 }
 
-// Static, from pose to pose, or turning (three times as often as each), within some `size`.
-Body random_body(Random& random, double size) {
+// A body whose motion is shifted by that.
+using Mover = std::function<Body(const Vector3d&)>;
+
+// Static, from pose to pose, or turning (twice as often as each), within some `size`.
+Mover random_mover(Random& random, double size) {
   const int count = random.whole(1, 12);
   const std::vector<Sphere> spheres = random_spheres(random, count, size, 0.3 * size);
   const Pose start = random.pose(1.5 * size);
   const Vector3d reference = random.whole(0, 1) ? random.point(size) : Vector3d::Zero();
+  const auto shifted = [](const Pose& pose, const Vector3d& shift) {
+    return Pose(pose.rotation(), pose.translation() + shift);
+  };
   switch (random.whole(0, 3)) {
     case 0:
-      return still_body(spheres, start);
+      return [=](const Vector3d& shift) { return still_body(spheres, shifted(start, shift)); };
     case 1:
-      return body_between(spheres, start, random.pose(1.5 * size), reference);
+      return [=, end = random.pose(1.5 * size)](const Vector3d& shift) {
+        return body_between(spheres, shifted(start, shift), shifted(end, shift), reference);
+      };
     default:
-      return turning_body(spheres, start, random.point(1.0),
-                          random.between(-1.0, 1.0) * std::ldexp(8.0, -random.whole(0, 12)),
-                          random.point(random.whole(0, 1) ? 3.0 * size : 0.0), reference,
-                          random.whole(2, 16));
+      break;
   }
+  const Vector3d axis = random.point(1.0);
+  const double angle = random.between(-1.0, 1.0) * std::ldexp(64.0, -random.whole(0, 15));
+  const Vector3d way = random.point(random.whole(0, 1) ? 3.0 * size : 0.0);
+  return [=](const Vector3d& shift) {
+    return turning_body(spheres, shifted(start, shift), axis, angle, way, reference);
+  };
 }
 
-// Swept queries of random bodies against brute force with thousands of steps.
+Body random_body(Random& random, double size) {
+  return random_mover(random, size)(Vector3d::Zero());
+}
 
+// By how much a has to be shifted, in some direction, for the least gap at `t` to be `gap`.
+Vector3d shift_to_gap(Random& random, const Body& a, const Body& b, double t, double gap) {
+  const auto centers_a = centers_at(a, t), centers_b = centers_at(b, t);
+  const auto vector = [](const Vector<long double>& v) {
+    return Eigen::Matrix<long double, 3, 1>(v[0], v[1], v[2]);
+  };
+  const auto direction = random.direction().cast<long double>().eval();
+  // First on to a sphere of b, then out of all that are in the way.
+  const auto aim = vector(difference(centers_b[0], centers_a[0]));
+  std::optional<long double> farthest;
+  for (std::size_t i = 0; i < centers_a.size(); ++i) {
+    for (std::size_t j = 0; j < centers_b.size(); ++j) {
+      const auto from = (vector(difference(centers_a[i], centers_b[j])) + aim).eval();
+      const long double reach =
+          static_cast<long double>(a.tree.spheres()[i].radius) + b.tree.spheres()[j].radius + gap;
+      const long double passed = from.dot(direction) / direction.squaredNorm();
+      const long double square = reach * reach - (from - passed * direction).squaredNorm();
+      if (reach < 0.0L || square < 0.0L) continue;
+      const long double way = std::sqrt(square / direction.squaredNorm()) - passed;
+      farthest = std::max(farthest.value_or(way), way);
+    }
+  }
+  return (aim + farthest.value_or(0.0L) * direction).cast<double>();
+}
+
+// Anywhere, and shifted so that they come within a clearance and a small gap at some instant.
 TEST(Sweep, IsTrueAtThousandsOfInstants) {
-  Random random(1);
-  int counts[3] = {};
-  int proved_near = 0;
-  for (int i = 0; i < effort(200, 25); ++i) {
+  Random random(seeded(1));
+  int counts[3] = {}, proved_near = 0;
+  for (int i = 0; i < scaled(300, 40); ++i) {
     const double size = std::ldexp(1.0, random.whole(-20, 20));
-    const Body a = random_body(random, size);
+    const Mover mover = random_mover(random, size);
     const Body b = random_body(random, size);
-    const SweepResult result = run(a, b);
-    const double least = expect_true(a, b, result, 3000);
+    Body a = mover(Vector3d::Zero());
+    SweepRequest request;
+    if (random.chance(0.3)) request.clearance = random.between(0.0, 0.5) * size;
+    if (random.chance(0.3)) request.resolution = random.magnitude(1e-7, 0.1);
+    const double meeting = random.chance(0.1) ? random.whole(0, 1) : random.unit();
+    const bool is_near = random.chance(0.6);
+    if (is_near) {
+      const double gap = request.clearance + random.small_gap() * size;
+      a = mover(shift_to_gap(random, a, b, meeting, gap));
+    }
+    const SweepResult result = run(a, b, request);
+    const double least = expect_true(a, b, result, 2000, request, meeting) - request.clearance;
+    ASSERT_FALSE(HasFailure()) << i;
     ++counts[static_cast<int>(result.verdict)];
     // What has room for the resolution must be proved. The steps may have missed a little.
-    const double room = fastest(a, b) * (0.5e-4 + 0.5 / 3000) * 1.01;
+    const double rounding = 1e-11 * size;
+    const double room = fastest(a, b) * (0.5 * request.resolution + 0.5 / 2000) * 1.01 + rounding;
     if (least > room) {
       ASSERT_EQ(result.verdict, Verdict::kFree) << i << " " << least / room;
       proved_near += least < 0.1 * size;
@@ -171,99 +225,17 @@ TEST(Sweep, IsTrueAtThousandsOfInstants) {
     if (least < 0.0) {
       ASSERT_NE(result.verdict, Verdict::kFree);
     }
-    expect_same(result, run(b, a));
+    if (result.free_until > 0.0 && result.free_until < 1.0) {
+      ASSERT_LT(gap_at(a, b, result.free_until) - request.clearance,
+                fastest(a, b) * 2.0 * request.resolution + rounding);
+    }
+    expect_same(result, run(b, a, request));
+    a.tree = build_tree(a.tree.spheres(), {.branching = random.whole(2, 16)});
+    expect_same(result, run(a, b, request));
   }
   EXPECT_GT(counts[static_cast<int>(Verdict::kFree)], effort(30, 3));
-  EXPECT_GT(counts[static_cast<int>(Verdict::kCollision)], effort(50, 6));
+  EXPECT_GT(counts[static_cast<int>(Verdict::kCollision)], effort(80, 8));
   EXPECT_GT(proved_near, effort(2, 0));
-}
-
-// Motions that are shifted to pass at a chosen gap, on either side of nothing.
-TEST(Sweep, IsTrueNextToContact) {
-  Random random(2);
-  int free = 0;
-  int not_free = 0;
-  for (int i = 0; i < effort(60, 8); ++i) {
-    const std::vector<Sphere> spheres = random_spheres(random, 6, 1.0, 0.3);
-    const Pose start = random.pose(1.0);
-    const Vector3d axis = random.point(1.0);
-    const double angle = random.between(-7.0, 7.0);
-    const Vector3d way = random.point(2.0);
-    const Body mover = turning_body(spheres, start, axis, angle, way);
-    // A sphere whose surface the mover passes at `gap`: its radius is the least distance of its
-    // centre, found by steps and then narrowed down.
-    const Vector3d center = random.point(4.0);
-    const auto distance = [&](double t) { return gap_at(mover, still_body({{center, 0.0}}), t); };
-    double best = 0.0;
-    for (int k = 1; k <= 500; ++k) best = distance(k / 500.0) < distance(best) ? k / 500.0 : best;
-    for (double step = 1e-3; step > 1e-10; step *= 0.5) {
-      for (const double t : {best - step, best + step}) {
-        if (t >= 0.0 && t <= 1.0 && distance(t) < distance(best)) best = t;
-      }
-    }
-    const double room = distance(best);
-    if (room <= 0.01) continue;
-    for (const double gap : {1e-2, 3e-3, 1e-3, 1e-5, 1e-9, 0.0, -1e-9, -1e-6, -1e-4}) {
-      const Body obstacle = still_body({{center, room - gap}});
-      const SweepResult result = run(mover, obstacle);
-      if (gap <= 0.0) {
-        ASSERT_NE(result.verdict, Verdict::kFree) << gap;
-        ASSERT_LE(result.free_until, best + 1e-6);
-        ++not_free;
-      }
-      if (gap >= 3e-3) {
-        ASSERT_EQ(result.verdict, Verdict::kFree) << gap;
-        ++free;
-      }
-      if (gap <= -1e-6) {
-        // The first fraction not proved is near the first contact.
-        double first = 0.0;
-        while (first < 1.0 && distance(first) > room - gap) first += 1e-4;
-        ASSERT_LE(result.free_until, first);
-        ASSERT_TRUE(first == 0.0 || gap_at(mover, obstacle, result.free_until) > 0.0);
-        ASSERT_LT(gap_at(mover, obstacle, result.free_until), fastest(mover, obstacle) * 2e-4);
-      }
-    }
-    expect_true(mover, still_body({{center, room - 1e-3}}),
-                run(mover, still_body({{center, room - 1e-3}})), 2000);
-  }
-  EXPECT_GT(free, effort(50, 6));
-  EXPECT_GT(not_free, effort(100, 12));
-}
-
-TEST(Sweep, KeepsAClearance) {
-  Random random(7);
-  int free = 0;
-  int contacts = 0;
-  for (int i = 0; i < 200; ++i) {
-    const Body a = random_body(random, 1.0);
-    const Body b = random_body(random, 1.0);
-    const SweepRequest request = {.clearance = random.between(0.0, 0.5)};
-    const SweepResult result = run(a, b, request);
-    expect_true(a, b, result, 500, request);
-    free += result.verdict == Verdict::kFree;
-    contacts += result.verdict == Verdict::kCollision;
-    ASSERT_TRUE(result.verdict != Verdict::kFree || run(a, b).verdict == Verdict::kFree);
-  }
-  EXPECT_GT(free, 20);
-  EXPECT_GT(contacts, 50);
-}
-
-TEST(Sweep, DoesNotDependOnTheShapeOfTheTrees) {
-  Random random(8);
-  for (int i = 0; i < 60; ++i) {
-    const std::vector<Sphere> spheres = random_spheres(random, 100, 1.0, 0.08);
-    const Pose start = random.pose(1.0);
-    const Vector3d axis = random.point(1.0);
-    const Vector3d way = random.point(4.0);
-    const Body still = still_body(random_spheres(random, 100, 1.0, 0.08), random.pose(3.0));
-    const auto with = [&](int branching) {
-      return run(turning_body(spheres, start, axis, 2.0, way, Vector3d::Zero(), branching), still);
-    };
-    const SweepResult binary = with(2);
-    expect_same(binary, with(5));
-    expect_same(binary, with(16));
-  }
 }
 
 TEST(Sweep, LimitsLeaveItUnknownAndTrue) {
@@ -347,37 +319,6 @@ std::vector<Sphere> rod() {
   std::vector<Sphere> spheres;
   for (int i = 0; i <= 40; ++i) spheres.push_back({{0.025 * i, 0.0, 0.0}, 0.02});
   return spheres;
-}
-
-TEST(Sweep, ARodThatTurnsManyTimes) {
-  Random random(4);
-  for (int i = 0; i < effort(100, 12); ++i) {
-    const double rho = random.between(0.1, 1.0);
-    const double at = random.between(0.3, 2.0 * kPi - 0.3);
-    const int turns = random.whole(0, 6);
-    // Beside a sphere, over it at a height that the rod just misses, or just does not.
-    const double height = random.whole(0, 1) ? 0.031 : 0.0299;
-    const Body obstacle = still_body({{{rho * std::cos(at), rho * std::sin(at), height}, 0.01}});
-    const Vector3d axis(0.0, 0.0, random.whole(1, 3));
-    const double before = at - 0.2 + 2.0 * kPi * turns;
-    if (before <= 2.0 * kPi && turns == 0) {
-      const Body short_of_it = turning_body(rod(), Pose(), axis, at - 0.35 / (rho + 0.5));
-      const SweepResult result = run(short_of_it, obstacle, {.resolution = 1e-6});
-      if (gap_at(short_of_it, obstacle, 1.0) > 1e-3) {
-        ASSERT_EQ(result.verdict, Verdict::kFree);
-      }
-      expect_true(short_of_it, obstacle, result, 500);
-    }
-    const Body past_it = turning_body(rod(), Pose(), axis, at + 0.3 + 2.0 * kPi * turns);
-    const SweepResult result = run(past_it, obstacle, {.resolution = 1e-6});
-    if (height > 0.03) {
-      ASSERT_EQ(result.verdict, Verdict::kFree);
-    } else if (rho < 0.9) {
-      // Between two spheres of the rod there is a dent, which the low sphere does not fit through
-      // everywhere; where it does, brute force must agree.
-      expect_true(past_it, obstacle, result, 3000);
-    }
-  }
 }
 
 TEST(Sweep, AFullTurnBackToTheStartIsNoRest) {

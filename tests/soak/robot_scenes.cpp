@@ -6,86 +6,60 @@
 #include "collide/meshes/solid_mesh.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
+#include "tests/support/exact/spheres.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 namespace spherule::test {
 namespace {
 
-constexpr double kSize = 0.4;
-
-std::vector<PlacedTree> make_obstacles(SoakRandom& random) {
-  std::vector<PlacedTree> obstacles;
-  for (int i = random.whole(1, 3); i > 0; --i) {
-    const int count = random.chance(0.95) ? random.whole(1, 12) : random.whole(100, 300);
-    obstacles.push_back({std::make_shared<const SphereTree>(random_tree(random, count, kSize)),
-                         Pose(random.rotation(), random.in_cube(2.0 * kSize))});
-  }
-  return obstacles;
+// Along an axis now and then.
+Eigen::Vector3d any_direction(Random& random) {
+  return random.chance(0.1)
+             ? Eigen::Vector3d(random.sign() * Eigen::Vector3d::Unit(random.whole(0, 2)))
+             : random.direction();
 }
 
-// Its first joint leads it past `aim`.
-RobotModel make_robot(SoakRandom& random, const Eigen::Vector3d& aim,
-                      const Eigen::Vector3d& direction) {
-  RobotModel robot("link_0");
-  const int joints = random.whole(1, 5);
-  for (int i = 0; i < joints; ++i) {
-    Joint joint;
-    joint.name = "joint_" + std::to_string(i);
-    joint.type = JointType::kPrismatic;
-    joint.axis = direction;
-    joint.parent_from_joint = Pose::from_translation(aim);
-    if (i > 0) {
-      joint.type = random.chance(0.2) ? JointType::kPrismatic : JointType::kRevolute;
-      joint.axis = random.direction();
-      joint.parent_from_joint = Pose(random.rotation(), random.in_cube(kSize));
-    }
-    joint.lower = -100.0;
-    joint.upper = 100.0;
-    const int parent = i == 0 ? 0 : random.whole(1, i);
-    const std::string link = "link_" + std::to_string(i + 1);
-    robot.add_link(link, "link_" + std::to_string(parent), joint);
-    if (i + 1 == joints || random.chance(0.5)) {
-      robot.attach(link, std::make_shared<const SphereTree>(
-                             random_tree(random, random.whole(1, 12), 0.5 * kSize)));
-    }
-  }
-  return robot;
+// Unit or of any length; now and then no turn at all.
+Eigen::Quaterniond any_rotation(Random& random) {
+  if (random.chance(0.05)) return Eigen::Quaterniond::Identity();
+  return random.coin() ? random.quaternion() : random.rotation();
 }
 
-double random_size_of_scene(SoakRandom& random) {
+double random_size_of_scene(Random& random) {
   return random.chance(0.6) ? 1.0 : random.magnitude(1e-3, 1e3);
 }
 
-Pose random_root(SoakRandom& random, double size) {
+Pose random_root(Random& random, double size) {
   if (random.chance(0.4)) return Pose();
   const double far = random.chance(0.2) ? random.magnitude(1.0, 1e6) : 1.0;
   // A scene takes it with a unit rotation.
-  return Pose(unit_rotation(random.rotation()), random.in_cube(far * size));
+  return Pose(unit_rotation(any_rotation(random)), random.point(far * size));
 }
 
-std::shared_ptr<const SphereTree> body_tree(SoakRandom& random, double size) {
+std::shared_ptr<const SphereTree> body_tree(Random& random, double size) {
   const double kind = random.unit();
   const int count = kind < 0.3 ? 1 : kind < 0.95 ? random.whole(2, 12) : random.whole(20, 120);
   std::vector<Sphere> spheres;
-  const Eigen::Vector3d along = 0.5 * size * random.direction();
+  const Eigen::Vector3d along = 0.5 * size * any_direction(random);
   for (int i = 0; i < count; ++i) {
     const double radius = random.chance(0.1) ? 0.0 : size * random.between(0.01, 0.1);
-    spheres.push_back({along * random.unit() + random.in_cube(0.1 * size), radius});
+    spheres.push_back({along * random.unit() + random.point(0.1 * size), radius});
   }
   if (random.chance(0.1)) spheres[0].center.setZero();
   return std::make_shared<const SphereTree>(
       build_tree(spheres, {.branching = random.whole(2, SphereTree::kMaxBranching)}));
 }
 
-TriangleMesh tetrahedron(SoakRandom& random, double size) {
+TriangleMesh tetrahedron(Random& random, double size) {
   TriangleMesh mesh;
-  const Eigen::Vector3d place = random.in_cube(0.3 * size);
+  const Eigen::Vector3d place = random.point(0.3 * size);
   mesh.vertices = {place, place + size * Eigen::Vector3d::UnitX(),
                    place + size * Eigen::Vector3d::UnitY(),
                    place + size * random.between(0.1, 1.0) * Eigen::Vector3d::UnitZ()};
@@ -99,98 +73,7 @@ std::string numbered(const char* name, std::size_t i) {
 
 }  // namespace
 
-TreeScene::TreeScene(SoakRandom& random)
-    : obstacles_(make_obstacles(random)),
-      direction_(random.direction()),
-      robot_(make_robot(random,
-                        obstacles_[0].world_from_tree * obstacles_[0].tree->spheres()[0].center,
-                        direction_)) {
-  for (const PlacedTree& obstacle : obstacles_) {
-    add_placed(obstacle.tree->spheres(), obstacle.world_from_tree, static_);
-  }
-}
-
-RobotScene TreeScene::scene() const {
-  RobotScene scene(robot_);
-  AllowedCollisions allowed(robot_);
-  allowed.allow_all();
-  scene.set_allowed_collisions(std::move(allowed));
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    scene.add("obstacle " + std::to_string(i), obstacles_[i].tree, obstacles_[i].world_from_tree);
-  }
-  return scene;
-}
-
-std::vector<double> TreeScene::anywhere(SoakRandom& random) const {
-  std::vector<double> configuration{random.between(-3.0, 3.0)};
-  for (int i = 1; i < robot_.variable_count(); ++i) {
-    configuration.push_back(random.between(-std::numbers::pi, std::numbers::pi));
-  }
-  return configuration;
-}
-
-template <class Use>
-bool TreeScene::any_pair(std::span<const double> configuration, Use use) {
-  forward_kinematics(robot_, configuration, world_from_link_);
-  for (std::size_t link = 0; link < robot_.links().size(); ++link) {
-    for (const auto& tree : robot_.links()[link].trees) {
-      for (const PlacedTree& obstacle : obstacles_) {
-        if (use(*tree, world_from_link_[link], obstacle)) return true;
-      }
-    }
-  }
-  return false;
-}
-
-bool TreeScene::bring_to_gap(std::vector<double>& configuration, double gap) {
-  configuration[0] = 0.0;
-  forward_kinematics(robot_, configuration, world_from_link_);
-  movers_.clear();
-  for (std::size_t link = 0; link < robot_.links().size(); ++link) {
-    for (const auto& tree : robot_.links()[link].trees) {
-      add_placed(tree->spheres(), world_from_link_[link], movers_);
-    }
-  }
-  const auto way = way_to_gap(static_, movers_, direction_, gap);
-  if (!way || std::abs(*way) > RobotChecker::kLargestPosition) return false;
-  configuration[0] = *way;
-  return true;
-}
-
-bool TreeScene::touches(std::span<const double> configuration) {
-  return any_pair(
-      configuration, [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
-        return oracle_.within({tree.spheres(), pose},
-                              {obstacle.tree->spheres(), obstacle.world_from_tree}, 0.0);
-      });
-}
-
-GapBounds TreeScene::gap(std::span<const double> configuration) {
-  constexpr long double kFar = std::numeric_limits<double>::infinity();
-  GapBounds least{kFar, kFar};
-  any_pair(configuration,
-           [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
-             const GapBounds gap = oracle_.gap(
-                 {tree.spheres(), pose}, {obstacle.tree->spheres(), obstacle.world_from_tree});
-             least.lower = std::min(least.lower, gap.lower);
-             least.upper = std::min(least.upper, gap.upper);
-             return false;
-           });
-  return least;
-}
-
-double TreeScene::slack(std::span<const double> configuration) {
-  double largest = 0.0;
-  any_pair(configuration,
-           [&](const SphereTree& tree, const Pose& pose, const PlacedTree& obstacle) {
-             largest = std::max(
-                 largest, collision_slack(tree, pose, *obstacle.tree, obstacle.world_from_tree));
-             return false;
-           });
-  return largest;
-}
-
-CheckerScene::CheckerScene(SoakRandom& random)
+CheckerScene::CheckerScene(Random& random)
     : size_(random_size_of_scene(random)),
       world_from_root_(random_root(random, size_)),
       scene_(make_robot(random), world_from_root_),
@@ -200,7 +83,7 @@ CheckerScene::CheckerScene(SoakRandom& random)
   make_pairs(random);
 }
 
-RobotModel CheckerScene::make_robot(SoakRandom& random) {
+RobotModel CheckerScene::make_robot(Random& random) {
   RobotModel robot("link_0");
   std::vector<std::string> moving;
   const int joints = random.whole(1, random.chance(0.1) ? 24 : 7);
@@ -215,9 +98,9 @@ RobotModel CheckerScene::make_robot(SoakRandom& random) {
                  : kind < 0.85 ? JointType::kPrismatic
                                : JointType::kFixed;
     if (i == joints && moving.empty()) joint.type = JointType::kRevolute;
-    joint.axis = random.direction();
+    joint.axis = any_direction(random);
     joint.parent_from_joint =
-        random.chance(0.1) ? Pose() : Pose(random.rotation(), random.in_cube(0.5 * size_));
+        random.chance(0.1) ? Pose() : Pose(any_rotation(random), random.point(0.5 * size_));
     joint.lower = -kLargestJointPosition;
     joint.upper = kLargestJointPosition;
     if (joint.type != JointType::kFixed) moving.push_back(joint.name);
@@ -238,7 +121,7 @@ RobotModel CheckerScene::make_robot(SoakRandom& random) {
   return robot;
 }
 
-void CheckerScene::make_bodies(SoakRandom& random) {
+void CheckerScene::make_bodies(Random& random) {
   for (std::size_t i = 0; i < robot().links().size(); ++i) {
     const Link& link = robot().links()[i];
     bodies_.push_back({link.name, true, static_cast<int>(i), link.trees});
@@ -247,7 +130,7 @@ void CheckerScene::make_bodies(SoakRandom& random) {
     // In the order of the names.
     const std::string name = numbered("object_", static_cast<std::size_t>(3 - i));
     const std::string& link = robot().links().back().name;
-    const Pose link_from_object(random.rotation(), random.in_cube(0.3 * size_));
+    const Pose link_from_object(any_rotation(random), random.point(0.3 * size_));
     const Tree tree = body_tree(random, size_);
     scene_.attach(name, link, tree, link_from_object);
     Joint joint;
@@ -271,7 +154,7 @@ void CheckerScene::make_bodies(SoakRandom& random) {
   }
 }
 
-ObstacleShape CheckerScene::make_shape(SoakRandom& random) const {
+ObstacleShape CheckerScene::make_shape(Random& random) const {
   const auto length = [&] {
     const double kind = random.unit();
     return size_ * (kind < 0.7    ? random.between(0.05, 0.8)
@@ -297,7 +180,7 @@ ObstacleShape CheckerScene::make_shape(SoakRandom& random) const {
   }
 }
 
-void CheckerScene::make_obstacles(SoakRandom& random) {
+void CheckerScene::make_obstacles(Random& random) {
   const double kind = random.unit();
   int count = kind < 0.2 ? 0 : kind < 0.9 ? random.whole(1, 6) : random.whole(8, 40);
   for (std::size_t i = 0; count > 0; ++i, --count) {
@@ -310,10 +193,10 @@ void CheckerScene::make_obstacles(SoakRandom& random) {
       if (const auto* const sphere = std::get_if<SolidSphere>(primitive)) radius = sphere->radius;
       if (const auto* const solid = std::get_if<Capsule>(primitive)) radius = solid->radius;
     }
-    const Eigen::Vector3d at = (radius + size_ * random.between(0.3, 2.0)) * random.direction();
+    const Eigen::Vector3d at = (radius + size_ * random.between(0.3, 2.0)) * any_direction(random);
     const Pose world_from_shape =
         world_from_root_ *
-        Pose(random.chance(0.2) ? Eigen::Quaterniond::Identity() : random.rotation(), at);
+        Pose(random.chance(0.2) ? Eigen::Quaterniond::Identity() : any_rotation(random), at);
     scene_.add(name, shape, world_from_shape);
     obstacles_.push_back({name, shape, world_from_shape});
   }
@@ -358,7 +241,7 @@ std::vector<std::shared_ptr<const SphereTree>> CheckerScene::inflated(const Body
 }
 
 // The padding of a pair goes to the first body, as in a snapshot.
-void CheckerScene::make_pairs(SoakRandom& random) {
+void CheckerScene::make_pairs(Random& random) {
   for (std::size_t b = bodies_.size(); b-- > 0;) {
     const Body& body = bodies_[b];
     const auto settle = [&](const std::string& other, double& between, bool& region) {
@@ -405,7 +288,7 @@ void CheckerScene::make_pairs(SoakRandom& random) {
   }
 }
 
-std::vector<double> CheckerScene::anywhere(SoakRandom& random) const {
+std::vector<double> CheckerScene::anywhere(Random& random) const {
   std::vector<double> configuration;
   const double far = random.chance(0.05) ? 95.0 : std::numbers::pi;
   for (const int j : robot().variable_joints()) {
@@ -426,23 +309,25 @@ bool CheckerScene::in_filter_range(std::span<const double> configuration) const 
   });
 }
 
+template <class Use>
+auto CheckerScene::with_shapes(const Pair& pair, const Use& use) const {
+  const Pose& pose = pose_of(pair.link);
+  if (pair.other) return use(*pair.tree, pose, *pair.other, pose_of(pair.other_link));
+  const auto& [name, shape, world_from_shape] = obstacles_[pair.obstacle];
+  if (const auto* const solid = std::get_if<Primitive>(&shape)) {
+    return use(*pair.tree, pose, *solid, world_from_shape);
+  }
+  if (const auto* const tree = std::get_if<Tree>(&shape)) {
+    return use(*pair.tree, pose, **tree, world_from_shape);
+  }
+  return use(*pair.tree, pose, *std::get<std::shared_ptr<const SolidMesh>>(shape),
+             world_from_shape);
+}
+
 bool CheckerScene::touches(std::span<const double> configuration) {
   forward_kinematics(carrier_, configuration, world_from_link_, world_from_root_);
   const auto touches_pair = [&](const Pair& pair) {
-    const Pose& pose = world_from_link_[static_cast<std::size_t>(pair.link)];
-    if (pair.other) {
-      return collides(*pair.tree, pose, *pair.other,
-                      world_from_link_[static_cast<std::size_t>(pair.other_link)]);
-    }
-    const Obstacle& obstacle = obstacles_[pair.obstacle];
-    if (const auto* const solid = std::get_if<Primitive>(&obstacle.shape)) {
-      return collides(*pair.tree, pose, *solid, obstacle.world_from_shape);
-    }
-    if (const auto* const tree = std::get_if<Tree>(&obstacle.shape)) {
-      return collides(*pair.tree, pose, **tree, obstacle.world_from_shape);
-    }
-    return collides(*pair.tree, pose, *std::get<std::shared_ptr<const SolidMesh>>(obstacle.shape),
-                    obstacle.world_from_shape);
+    return with_shapes(pair, [](const auto&... shapes) { return collides(shapes...); });
   };
   if (last_ < pairs_.size() && touches_pair(pairs_[last_])) return true;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -457,28 +342,33 @@ double CheckerScene::gap(std::span<const double> configuration) {
   forward_kinematics(carrier_, configuration, world_from_link_, world_from_root_);
   double least = std::numeric_limits<double>::infinity();
   for (const Pair& pair : pairs_) {
-    const Pose& pose = world_from_link_[static_cast<std::size_t>(pair.link)];
-    const auto against = [&](const auto& other, const Pose& its) {
-      least = std::min(least, distance(*pair.tree, pose, other, its).upper);
-    };
-    if (pair.other) {
-      against(*pair.other, world_from_link_[static_cast<std::size_t>(pair.other_link)]);
-      continue;
-    }
-    const Obstacle& obstacle = obstacles_[pair.obstacle];
-    if (const auto* const solid = std::get_if<Primitive>(&obstacle.shape)) {
-      against(*solid, obstacle.world_from_shape);
-    } else if (const auto* const tree = std::get_if<Tree>(&obstacle.shape)) {
-      against(**tree, obstacle.world_from_shape);
-    } else {
-      against(*std::get<std::shared_ptr<const SolidMesh>>(obstacle.shape),
-              obstacle.world_from_shape);
-    }
+    least = std::min(
+        least, with_shapes(pair, [](const auto&... shapes) { return distance(shapes...).upper; }));
   }
   return least;
 }
 
-std::optional<CheckerScene::Border> CheckerScene::find_border(SoakRandom& random) {
+std::string CheckerScene::fault_of_trees(std::span<const double> configuration) {
+  forward_kinematics(carrier_, configuration, world_from_link_, world_from_root_);
+  std::string fault;
+  for (const Pair& pair : pairs_) {
+    with_shapes(pair, [&](const SphereTree& tree, const Pose& pose, const auto& other,
+                          const Pose& its_pose) {
+      if constexpr (std::is_same_v<decltype(other), const SphereTree&>) {
+        const PlacedSet a{tree.spheres(), pose}, b{other.spheres(), its_pose};
+        const bool hit = collides(tree, pose, other, its_pose);
+        if (hit == touch_exactly(a, b)) return;
+        if (!hit) fault = "missed";
+        if (hit && exact_gap(a, b) > collision_slack(tree, pose, other, its_pose)) {
+          fault = "beyond the slack";
+        }
+      }
+    });
+  }
+  return fault;
+}
+
+std::optional<CheckerScene::Border> CheckerScene::find_border(Random& random) {
   std::optional<std::vector<double>> free, contact;
   for (int i = 0; i < 12 && !(free && contact); ++i) {
     std::vector<double> next = anywhere(random);

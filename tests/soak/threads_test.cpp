@@ -5,9 +5,10 @@
 #include "collide/pair_cache.h"
 #include "robot/check/robot_scene.h"
 #include "simplifier/simplify.h"
-#include "tests/soak/random_scene.h"
+#include "spheretree/build.h"
 #include "tests/soak/robot_scenes.h"
 #include "tests/soak/scale.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_dir.h"
 
@@ -18,6 +19,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -39,16 +41,18 @@ struct CheckedPath {
 };
 
 // More than are shared out among threads.
-CheckedPath random_path(const TreeScene& robot, SoakRandom& random) {
+CheckedPath random_path(const CheckerScene& scene, Random& random) {
   CheckedPath path;
   for (path.count = 0; path.count < 4200; ++path.count) {
-    const std::vector<double> at = robot.anywhere(random);
+    const std::vector<double> at = scene.anywhere(random);
     path.configurations.insert(path.configurations.end(), at.begin(), at.end());
+    if (path.count >= 40) continue;
+    const std::vector<double> aim = scene.anywhere(random);
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      path.from.push_back(at[k]);
+      path.to.push_back(0.95 * at[k] + 0.05 * aim[k]);
+    }
   }
-  const auto edges = static_cast<std::ptrdiff_t>(path.configurations.size() / path.count * 40);
-  path.from.assign(path.configurations.begin(), path.configurations.begin() + edges);
-  path.to = path.from;
-  for (double& position : path.to) position += random.between(-0.1, 0.1);
   return path;
 }
 
@@ -91,22 +95,18 @@ void fit_and_stop(const TriangleMesh& mesh) {
 }
 
 TEST(Threads, AskTreesAtOnce) {
-  SoakRandom random(seeded(7));
+  Random random(seeded(7));
   for (int scene = 0; scene < scaled(2); ++scene) {
-    const ScenePair pair(random);
-    std::vector<PosePair> poses;
-    for (int i = 0; i < 200; ++i) {
-      const auto near = pair.at_gap(random, random.small_gap());
-      poses.push_back(near ? *near : pair.anywhere(random));
-    }
+    const SphereTree a = build_tree(random_spheres(random, 40, 1.0, 0.1));
+    const SphereTree b = build_tree(random_spheres(random, 40, 1.0, 0.1));
+    std::vector<Pose> poses;
+    for (int i = 0; i < 200; ++i) poses.push_back(random.pose(3.0));
     const auto query = [&] {
-      PairCache cache(pair.a(), pair.b());
+      PairCache cache(a, b);
       std::vector<double> said;
-      for (const PosePair& at : poses) {
-        const DistanceResult gap =
-            distance(pair.a(), at.world_from_a, pair.b(), at.world_from_b, {});
-        said.insert(said.end(), {gap.lower, gap.upper,
-                                 cache.collides(at.world_from_a, at.world_from_b) ? 1.0 : 0.0});
+      for (const Pose& pose : poses) {
+        const DistanceResult gap = distance(a, Pose(), b, pose, {});
+        said.insert(said.end(), {gap.lower, gap.upper, cache.collides(Pose(), pose) ? 1.0 : 0.0});
       }
       return said;
     };
@@ -118,12 +118,15 @@ TEST(Threads, AskTreesAtOnce) {
 }
 
 TEST(Threads, AskACheckerWhileItsSceneIsEdited) {
-  SoakRandom random(seeded(7));
+  Random random(seeded(7));
   for (int number = 0; number < scaled(1); ++number) {
-    const TreeScene robot(random);
-    RobotScene scene = robot.scene();
+    std::unique_ptr<CheckerScene> robot;
+    do {
+      robot = std::make_unique<CheckerScene>(random);
+    } while (robot->pair_count() == 0 || robot->scene().obstacles().empty());
+    RobotScene scene = robot->scene();
     const RobotChecker checker = scene.snapshot();
-    const CheckedPath path = random_path(robot, random);
+    const CheckedPath path = random_path(*robot, random);
     const CheckedAnswers expected = answers(checker, path, 1);
     std::vector<CheckedAnswers> said(kThreads);
     const std::vector<std::string> obstacles = scene.obstacles();
@@ -147,7 +150,7 @@ TEST(Threads, AskACheckerWhileItsSceneIsEdited) {
 }
 
 TEST(Threads, FitAtOnce) {
-  SoakRandom random(seeded(7));
+  Random random(seeded(7));
   for (int fit = 0; fit < scaled(1); ++fit) {
     const TriangleMesh mesh = make_box({1.0, random.between(0.3, 1.0), random.between(0.3, 1.0)});
     const std::vector<Sphere> expected = fitted(mesh, 1);
@@ -166,7 +169,7 @@ TEST(Threads, FitAtOnce) {
 }
 
 TEST(Threads, ShareAFile) {
-  SoakRandom random(seeded(7));
+  Random random(seeded(7));
   const TempDir folder;
   const std::filesystem::path file = folder.path() / "shared";
   for (int round = 0; round < scaled(20); ++round) {

@@ -10,7 +10,6 @@
 namespace spherule::test {
 
 int allocations = 0;
-bool exhausted = false;
 
 }  // namespace spherule::test
 
@@ -18,7 +17,7 @@ namespace {
 
 void* allocate(std::size_t size) {
   ++std::atomic_ref(spherule::test::allocations);
-  return spherule::test::exhausted ? nullptr : std::malloc(size);
+  return std::malloc(size);
 }
 
 }  // namespace

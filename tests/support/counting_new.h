@@ -5,9 +5,7 @@
 
 namespace spherule::test {
 
-// A program that links spherule_counting_new has these: calls of operator new so far, whether it
-// finds no memory any more, and how many bytes it finds at most.
+// A program that links spherule_counting_new has this: calls of operator new so far.
 extern int allocations;
-extern bool exhausted;
 
 }  // namespace spherule::test

@@ -68,14 +68,8 @@ Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) {
 }
 
 std::vector<Vector3d> component_points(const TriangleMesh& mesh) {
-  const std::vector<int> leaders = component_leaders(mesh);
   std::vector<Vector3d> points;
-  std::vector<char> seen(mesh.vertices.size(), 0);
-  for (const Vector3i& t : mesh.triangles) {
-    const auto leader = static_cast<std::size_t>(leaders[static_cast<std::size_t>(t[0])]);
-    if (seen[leader] == 0) points.push_back(mesh.vertices[leader]);
-    seen[leader] = 1;
-  }
+  for (const TriangleMesh& part : components(mesh)) points.push_back(part.vertices.front());
   return points;
 }
 

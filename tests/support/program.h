@@ -5,10 +5,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "tests/support/models.h"
 
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <optional>
@@ -51,9 +51,7 @@ inline std::int64_t count_argument(const std::string& option, std::string_view t
 
 // The folder of real models that SPHERULE_MODELS names, or nothing.
 inline std::optional<std::filesystem::path> models_folder() {
-  const char* const name = std::getenv("SPHERULE_MODELS");
-  return name == nullptr || *name == '\0' ? std::nullopt
-                                          : std::optional<std::filesystem::path>(name);
+  return test::models_dir();
 }
 
 // The same where there has to be one.

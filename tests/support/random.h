@@ -31,6 +31,18 @@ class Random {
   }
   bool coin() { return whole(0, 1) == 1; }
   double sign() { return coin() ? -1.0 : 1.0; }
+  bool chance(double share) { return unit() < share; }
+  // As many of each order of magnitude.
+  double magnitude(double low, double high) {
+    return std::exp(between(std::log(low), std::log(high)));
+  }
+  // 0, +-1e-12, +-1e-9, +-1e-6, +-1e-4, anything up to 2e-3, or of any order of magnitude.
+  double small_gap() {
+    constexpr double kGaps[] = {0.0, 1e-12, 1e-9, 1e-6, 1e-4};
+    const int kind = whole(0, 6);
+    const double gap = kind < 5 ? kGaps[kind] : kind == 5 ? 2e-3 * unit() : magnitude(1e-17, 1e-3);
+    return sign() * gap;
+  }
 
   Eigen::Vector3d in_box(const Eigen::AlignedBox3d& box) {
     Eigen::Vector3d p;

@@ -146,6 +146,22 @@ TriangleMesh revolve(const Loop& profile, int sides) {
   return mesh;
 }
 
+Eigen::Quaterniond turn_between(const Vector3d& from, const Vector3d& to) {
+  const Vector3d a = from.normalized();
+  const Vector3d b = to.normalized();
+  const double cosine = b.dot(a);
+  Eigen::Quaterniond turn;
+  if (cosine < -1.0 + 1e-12) {
+    turn.w() = 0.0;
+    turn.vec() = a.unitOrthogonal();
+    return turn;
+  }
+  const double twice_w = std::sqrt((1.0 + cosine) * 2.0);
+  turn.w() = twice_w * 0.5;
+  turn.vec() = a.cross(b) * (1.0 / twice_w);
+  return turn;
+}
+
 TriangleMesh tube_along(std::span<const Vector3d> path, std::span<const double> radii, int sides) {
   TriangleMesh mesh;
   const std::size_t points = path.size();

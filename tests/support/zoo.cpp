@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -17,32 +16,10 @@
 namespace spherule::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Splits the four corners, counter-clockwise seen from outside, into two triangles.
 void add_quad(TriangleMesh& mesh, int a, int b, int c, int d) {
   mesh.triangles.emplace_back(a, b, c);
   mesh.triangles.emplace_back(a, c, d);
-}
-
-// The quads of a grid of points that closes on itself in both directions. `seam` tells where the
-// point after the last one of row `r` in the second direction stands in the first row.
-TriangleMesh closed_grid(int rows, int columns, const std::function<Eigen::Vector3d(int, int)>& at,
-                         const std::function<int(int)>& seam) {
-  TriangleMesh mesh;
-  for (int c = 0; c < columns; ++c) {
-    for (int r = 0; r < rows; ++r) mesh.vertices.push_back(at(r, c));
-  }
-  const auto index = [&](int r, int c) {
-    r %= rows;
-    return c < columns ? c * rows + r : seam(r);
-  };
-  for (int c = 0; c < columns; ++c) {
-    for (int r = 0; r < rows; ++r) {
-      add_quad(mesh, index(r, c), index(r, c + 1), index(r + 1, c + 1), index(r + 1, c));
-    }
-  }
-  return mesh;
 }
 
 }  // namespace
@@ -156,17 +133,13 @@ TriangleMesh nested_shells(int count) {
   return mesh;
 }
 
-TriangleMesh klein_bottle(int around, int along) {
-  return closed_grid(
-      around, along,
-      [&](int r, int c) {
-        const double u = 2.0 * kPi * c / along, v = 2.0 * kPi * r / around;
-        const double rho = 3.0 + std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v);
-        return Eigen::Vector3d(rho * std::cos(u), rho * std::sin(u),
-                               std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v));
-      },
-      // Once round the ring the figure of eight is turned by half, which maps v to -v.
-      [around](int r) { return (around - r) % around; });
+TriangleMesh projective_plane() {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 1.1},       {1.2, 0, 0.1},     {0.3, 1, 0.1},
+                   {-0.8, 0.6, -0.1}, {-0.8, -0.6, 0.2}, {0.3, -1, -0.2}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
+                    {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
+  return mesh;
 }
 
 TriangleMesh three_fins() {
@@ -180,7 +153,7 @@ TriangleMesh needles(int sides) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, -1}, {0, 0, 1}};
   for (int i = 0; i < sides; ++i) {
-    const double angle = 2.0 * kPi * i / sides;
+    const double angle = 2.0 * std::numbers::pi * i / sides;
     mesh.vertices.emplace_back(0.01 * std::cos(angle), 0.01 * std::sin(angle), 0.0);
   }
   for (int i = 0; i < sides; ++i) {
@@ -238,7 +211,7 @@ std::vector<NamedMesh> mesh_zoo() {
           {"open-box", open_box()},
           {"inverted", inverted(cube_mesh())},
           {"nested-shells", nested_shells(3)},
-          {"klein-bottle", klein_bottle(16, 24)},
+          {"projective-plane", projective_plane()},
           {"duplicates", with_duplicates(cube_mesh())}};
 }
 

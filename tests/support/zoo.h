@@ -32,8 +32,8 @@ TriangleMesh open_box();
 TriangleMesh soup(int triangles, unsigned seed);
 // `count` boxes inside each other, facing outwards and inwards in turn.
 TriangleMesh nested_shells(int count);
-// A Klein bottle pressed flat on itself: closed without boundary, not orientable.
-TriangleMesh klein_bottle(int around, int along);
+// The projective plane, half an icosahedron: closed without boundary, not orientable.
+TriangleMesh projective_plane();
 // Three quarters of a plane that share one edge.
 TriangleMesh three_fins();
 // Triangles a thousand times as long as wide, on a closed spindle.

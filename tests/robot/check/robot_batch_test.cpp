@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many configurations a call, one behind the other or shared out among threads: the verdicts and
 // the errors of one at a time, whatever is remembered. That the answers are right, whatever the
-// order: tests/soak/configurations_test.cpp.
+// order: tests/soak/robots_test.cpp.
 
 #include "base/error.h"
 #include "robot/model/kinematics.h"

@@ -121,6 +121,18 @@ inline double exact_gap(const std::array<Eigen::Vector3d, 3>& a, const Pose& wor
   return exact_square > 0 ? std::max(1e-300, std::sqrt(exact_square.convert_to<double>())) : 0.0;
 }
 
+inline double exact_gap(const TriangleMesh& a, const Pose& world_from_a, const TriangleMesh& b,
+                        const Pose& world_from_b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3i& of_a : a.triangles) {
+    for (const Eigen::Vector3i& of_b : b.triangles) {
+      least = std::min(
+          least, exact_gap(corners_of(a, of_a), world_from_a, corners_of(b, of_b), world_from_b));
+    }
+  }
+  return least;
+}
+
 inline Real exact_triangle_distance(const Eigen::Vector3d& p,
                                     const std::array<Eigen::Vector3d, 3>& triangle) {
   return sqrt(squared_distance_to_triangle(exact<Real>(p), placed<Real>(Pose(), triangle)));

@@ -10,7 +10,10 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace spherule::test {
 
@@ -80,5 +83,60 @@ struct PlacedSphereSets {
     return squared_center_distance<Rational>() <= sum * sum;
   }
 };
+
+// Spheres under exactly the motion p -> R(q / |q|) p + t of a pose.
+struct PlacedSet {
+  std::span<const Sphere> spheres;
+  Pose world_from_set;
+};
+
+// The least gap of two spheres, one of each set.
+inline Real exact_gap(const PlacedSet& a, const PlacedSet& b) {
+  Real least = std::numeric_limits<double>::infinity();
+  for (const Sphere& p : a.spheres) {
+    for (const Sphere& q : b.spheres) {
+      const Real gap = PlacedSphereSets{p, q, a.world_from_set, b.world_from_set}.gap();
+      if (gap < least) least = gap;
+    }
+  }
+  return least;
+}
+
+// Whether two spheres, one of each set, touch in exact arithmetic: by long double where that is
+// certain. Let u be its unit roundoff and n = q.q. An entry of n R is a sum of products whose
+// magnitudes sum up to at most n, within 4 u n. With the matrix's error, its products and sums, the
+// division by n and the sum, the image of p errs by less than 28 u |p| + 2 u |t|. The difference of
+// two images, its length and the subtraction of the radii add less than 8 u times what they are
+// made from. So 64 u (|p| + |t| + r), summed over both spheres, bounds the error of a gap.
+inline bool touch_exactly(const PlacedSet& a, const PlacedSet& b) {
+  using Long = long double;
+  struct Placed {
+    Vector<Long> center;
+    Long error;
+  };
+  const auto placed = [](const PlacedSet& set) {
+    std::vector<Placed> all;
+    for (const auto& [center, radius] : set.spheres) {
+      const double extent =
+          center.lpNorm<1>() + set.world_from_set.translation().lpNorm<1>() + radius;
+      all.push_back({transform(set.world_from_set, exact<Long>(center)),
+                     32 * std::numeric_limits<Long>::epsilon() * extent * (1 + 1e-9)});
+    }
+    return all;
+  };
+  const std::vector<Placed> of_a = placed(a), of_b = placed(b);
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    for (std::size_t j = 0; j < of_b.size(); ++j) {
+      const Sphere &p = a.spheres[i], &q = b.spheres[j];
+      const Long gap = std::sqrt(squared_distance(of_a[i].center, of_b[j].center)) -
+                       (static_cast<Long>(p.radius) + q.radius);
+      const Long error = of_a[i].error + of_b[j].error;
+      if (gap < -error) return true;
+      if (gap > error) continue;
+      if (PlacedSphereSets{p, q, a.world_from_set, b.world_from_set}.overlap()) return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace spherule::test
