@@ -70,7 +70,8 @@ need_benchmarks() {
   need_bench_table
   need_command
   need_adapters
-  packages+=(libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev libqhull-dev)
+  packages+=(libbenchmark-dev libbullet-extras-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev
+    libqhull-dev)
 }
 
 # Selects Ninja for CMake, if it is installed; CMake reads the variable only when a build folder is made.
