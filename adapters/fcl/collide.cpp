@@ -42,7 +42,7 @@ struct PartContact {
 };
 
 struct PartDistance {
-  DistanceResult bounds;
+  spherule::DistanceResult bounds;
   Eigen::Vector3d points[2];  // of the two spheres that are nearest, nearest to each other
 };
 
@@ -141,8 +141,9 @@ std::vector<PartContact> triangle_contacts(const PlacedPart& a, const PlacedPart
   std::set<SpherePair> queried;
   std::set<std::pair<std::int32_t, std::int32_t>> taken;
   for (std::size_t limit = 8;; limit *= 8) {
-    const CollisionResult spheres = collide(*a.part.spheres, a.world_from_part, *b.part.spheres,
-                                            b.world_from_part, {.max_pairs = limit});
+    const spherule::CollisionResult spheres =
+        collide(*a.part.spheres, a.world_from_part, *b.part.spheres, b.world_from_part,
+                {.max_pairs = limit});
     for (const SpherePair& pair : spheres.pairs) {
       if (!queried.insert(pair).second) continue;
       const std::optional<TrianglePair> triangles =

@@ -96,9 +96,9 @@ class SceneReader {
                         "allowed_contacts", "padding"});
     if (root_.has("robot")) read_robot(root_.at("robot"));
     using Read = void (SceneReader::*)(const Value&);
-    const auto each = [this](const char* key, const char* what, Read read) {
+    const auto each = [this](const char* key, const char* what, Read one) {
       if (!root_.has(key)) return;
-      root_.at(key).each(what, [&](const Value& value) { (this->*read)(value); });
+      root_.at(key).each(what, [&](const Value& value) { (this->*one)(value); });
     };
     each("obstacles", "obstacle ", &SceneReader::read_obstacle);
     each("attached", "attached object ", &SceneReader::read_attached);
