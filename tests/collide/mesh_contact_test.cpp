@@ -159,9 +159,9 @@ TEST(MeshContact, IsNeverMissedAmongManyTriangles) {
     std::vector<Sphere> spheres[2];
     for (int k = 0; k < 2; ++k) {
       meshes[k] = random_triangles(random, 90, 0.15, 0.15);
-      for (std::size_t i = 0; i < meshes[k].vertices.size(); i += 3) {
+      for (std::size_t first = 0; first < meshes[k].vertices.size(); first += 3) {
         const Vector3d shift = random.point(1.0);
-        for (std::size_t v = i; v < i + 3; ++v) meshes[k].vertices[v] += shift;
+        for (std::size_t v = first; v < first + 3; ++v) meshes[k].vertices[v] += shift;
       }
       spheres[k] = {{Vector3d(-0.4, 0, 0), 1.9}, {Vector3d(0.4, 0, 0), 1.9}};
     }
