@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <set>
+#include <type_traits>
 #include <vector>
 
 namespace spherule::internal {
@@ -65,17 +66,18 @@ class JsonCheck : public Json::json_sax_t {
 }  // namespace
 
 template <class Json>
-Json parse_json(std::string_view text, const std::function<void(const std::string&)>& refuse) {
+JsonDocument<Json> parse_json(std::string_view text,
+                              const std::function<void(const std::string&)>& refuse) {
   constexpr bool is_ordered = std::is_same_v<Json, nlohmann::ordered_json>;
   JsonCheck<Json> check(is_ordered ? kMostOrderedKeys : ~std::size_t{0});
   Json::sax_parse(text, &check);
   if (!check.fault().empty()) refuse(check.fault());
-  return Json::parse(text);
+  return JsonDocument<Json>(Json::parse(text));
 }
 
-template nlohmann::json parse_json(std::string_view,
-                                   const std::function<void(const std::string&)>&);
-template nlohmann::ordered_json parse_json(std::string_view,
-                                           const std::function<void(const std::string&)>&);
+template JsonDocument<nlohmann::json> parse_json(std::string_view,
+                                                 const std::function<void(const std::string&)>&);
+template JsonDocument<nlohmann::ordered_json> parse_json(
+    std::string_view, const std::function<void(const std::string&)>&);
 
 }  // namespace spherule::internal

@@ -24,12 +24,32 @@ namespace spherule::internal {
 inline constexpr std::size_t kDeepestJson = 200;
 inline constexpr std::size_t kMostOrderedKeys = std::size_t{1} << 13;
 
+// A value that is destroyed without memory being allocated: nlohmann's own destructor lists the
+// elements of arrays and objects first, and ends the process where there is no memory for that.
+template <class Json>
+class JsonDocument : public Json {
+ public:
+  explicit JsonDocument(Json root) : Json(std::move(root)) {}
+  JsonDocument(JsonDocument&&) noexcept = default;
+  JsonDocument& operator=(JsonDocument&&) noexcept = default;
+  ~JsonDocument() { dismantle(*this); }
+
+ private:
+  // From the leaves to the root, at most kDeepestJson deep.
+  static void dismantle(Json& value) {
+    if (!value.is_structured()) return;
+    for (Json& part : value) dismantle(part);
+    value.clear();
+  }
+};
+
 // The value of a JSON text; Json is nlohmann::json or nlohmann::ordered_json. What is no JSON is
 // refused, so is what is nested deeper than kDeepestJson, a key that an object holds twice, of
 // which nlohmann's parser would silently keep the last, and more than kMostOrderedKeys keys of an
 // ordered object, as it searches them one after the other: `refuse(reason)` has to throw.
 template <class Json>
-Json parse_json(std::string_view text, const std::function<void(const std::string&)>& refuse);
+JsonDocument<Json> parse_json(std::string_view text,
+                              const std::function<void(const std::string&)>& refuse);
 
 // A value of a document and where that is, for messages: an Error names the file and says what
 // `place` is not. Refers to both.
@@ -39,6 +59,9 @@ class JsonValue {
   // `place` is empty for the whole document.
   JsonValue(const Json& json, const std::string& file, std::string place = {})
       : json_(json), file_(file), place_(std::move(place)) {}
+
+  JsonValue(const Json&&, const std::string&, std::string = {}) = delete;
+  JsonValue(const Json&, const std::string&&, std::string = {}) = delete;
 
   const Json& json() const { return json_; }
   const std::string& place() const { return place_; }
@@ -50,8 +73,11 @@ class JsonValue {
   void unless(bool good, const std::string& reason) const {
     if (!good) refuse(reason);
   }
+  [[noreturn]] void blame(const std::string& fault) const {
+    throw Error(file_, place_.empty() ? fault : place_ + " " + fault);
+  }
   void expect(bool good, const std::string& fault) const {
-    if (!good) throw Error(file_, place_.empty() ? fault : place_ + " " + fault);
+    if (!good) blame(fault);
   }
 
   // An object with no keys but these.

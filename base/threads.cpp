@@ -19,8 +19,10 @@ void run_in_parts(std::size_t begin, std::size_t end, const void* work,
                   void (*call)(const void* work, std::size_t first, std::size_t last)) {
   if (begin >= end) return;
   using Range = tbb::blocked_range<std::size_t>;
-  // What is thrown in one loop cancels that loop alone, not those inside its other parts.
-  tbb::task_group_context own(tbb::task_group_context::isolated);
+  // What is thrown in one loop cancels that loop alone, not those inside its other parts. Parts
+  // round as the caller does, not as who started oneTBB.
+  tbb::task_group_context own(tbb::task_group_context::isolated,
+                              tbb::task_group_context::fp_settings);
   // A thread that waits for a loop inside another takes no part of the outer one meanwhile, whose
   // memory would come on top.
   tbb::this_task_arena::isolate([&] {
@@ -44,7 +46,7 @@ void share_work(std::size_t pieces, std::size_t workers,
   std::exception_ptr failure;
   // Pieces before one that threw were handed out earlier, and whoever has got one does it, so that
   // in the end the first failure is known.
-  parallel_for(0, std::min(pieces, workers), [&](std::size_t worker) {
+  parallel_for(0, std::min(pieces, std::max<std::size_t>(workers, 1)), [&](std::size_t worker) {
     while (!has_failed) {
       const std::size_t piece = next++;
       if (piece >= pieces) return;

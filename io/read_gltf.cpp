@@ -298,7 +298,7 @@ class GltfDocument {
   const std::string& subject_;
   std::string_view json_;
   std::optional<std::string_view> binary_chunk_;
-  Json root_;
+  JsonDocument<Json> root_{Json()};
   bool is_quantized_ = false;
 };
 

@@ -232,8 +232,7 @@ Pose read_pose(const Value& value) {
   try {
     return {Eigen::Quaterniond(p[6], p[3], p[4], p[5]), Eigen::Vector3d(p[0], p[1], p[2])};
   } catch (const Error& error) {
-    value.expect(false, std::string("is not usable: ") + error.what());
-    throw;
+    value.blame(std::string("is not usable: ") + error.what());
   }
 }
 
@@ -308,14 +307,14 @@ std::string internal::encode_spheres(const SphereFile& file, const std::string& 
 }
 
 SphereFile internal::decode_spheres(std::string_view text, const std::string& name) {
-  const json parsed = parse_json<json>(text, Refusal(name));
+  const auto parsed = parse_json<json>(text, Refusal(name));
   const Value document(parsed, name);
   document.expect(parsed.is_object(), "is not an object");
   const auto format = document.find("format");
   document.expect(format && format->json() == kFormat,
                   "is not of format \"" + std::string(kFormat) + "\"");
   const Value version = document.at("version");
-  version.expect(version.json().is_number_unsigned() && version.json() >= 1,
+  version.expect(version.json().is_number_unsigned() && version.json() >= 1U,
                  "is not a positive integer");
   document.expect(version.json() <= kVersion, "has format version " + version.json().dump() +
                                                   "; this program reads versions up to " +

@@ -131,7 +131,7 @@ struct WriteShape {
   }
 };
 
-Json parsed(std::string_view text, const std::string& subject) {
+internal::JsonDocument<Json> parsed(std::string_view text, const std::string& subject) {
   return internal::parse_json<Json>(
       text, [&](const std::string& reason) { throw Error(subject, reason); });
 }
@@ -139,7 +139,7 @@ Json parsed(std::string_view text, const std::string& subject) {
 }  // namespace
 
 std::vector<Zone> parse_zones(std::string_view text, const std::string& subject) {
-  const Json document = parsed(text, subject);
+  const auto document = parsed(text, subject);
   const Reader read(document, subject, "file", {"format", "version", "zones"});
   if (read.text("format") != kFormat) read.fail("is not of format \"spherule-zones\"");
   const Json& version = read.member("version");

@@ -107,18 +107,21 @@ std::string audit_table(const RobotAuditReport& report, const Json& json) {
   for (const Json& link : json["links"]) {
     if (link["certificate"].is_null() && link["sphere_count"] == 0) continue;
     rows.push_back(link);
+    rows.back()["leak"] = filled("{certificate.uncovered_depth_surface:mm~}", link);
     if (link["certificate"].is_null()) {
+      rows.back()["leak"] = "no geometry";
       rows.back()["uncovered_share"] = nullptr;
     } else if (!link["certificate"]["deepest_leak"].is_null()) {
       leaking.push_back(link);
     }
   }
   rows.push_back(json_of(all_links(report.audit.links)));
+  rows.back()["leak"] = filled("{certificate.uncovered_depth_surface:mm~}", rows.back());
   rows.back()["uncovered_share"] = nullptr;
   std::string text = filled("{format}; lengths in mm\n", json) +
                      table(rows, {{"link", "{link}"},
                                   {"spheres", "{sphere_count}"},
-                                  {"leak surface", "{certificate.uncovered_depth_surface:mm~}"},
+                                  {"leak surface", "{leak}"},
                                   {"leak inside", "{certificate.uncovered_depth_solid:mm~}"},
                                   {"uncovered", "{uncovered_share:%1}"},
                                   {"protrusion", "{certificate.protrusion_over_mesh:mm~}"},

@@ -163,7 +163,7 @@ std::string describe_robot_spheres(const std::string& file) {
 
 bool is_interrupted_report(const std::string& file) {
   const auto refuse = [&](const std::string& reason) { throw Error(file, reason); };
-  const Json report = internal::parse_json<Json>(read_file(file), refuse);
+  const auto report = internal::parse_json<Json>(read_file(file), refuse);
   return report.is_object() && report.value("interrupted", Json()) == true;
 }
 

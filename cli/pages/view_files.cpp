@@ -167,8 +167,8 @@ std::vector<LeakPoint> leaks_of(const Json& certificate, const std::string& file
   });
 }
 
-Json json_in(const std::filesystem::path& file) {
-  if (file.extension() != ".json") return nullptr;
+internal::JsonDocument<Json> json_in(const std::filesystem::path& file) {
+  if (file.extension() != ".json") return internal::JsonDocument<Json>(nullptr);
   const auto refuse = [&](const std::string& reason) { throw Error(file.string(), reason); };
   return internal::parse_json<Json>(read_file(file), refuse);
 }
@@ -182,9 +182,8 @@ std::vector<ViewItem> view_items(const std::string& file, const std::string& uni
     return {{.name = file, .parts = {{std::move(spheres.spheres)}}, .facts = facts}};
   }
   if (kind == FileKind::kTree) return {{.name = file, .parts = {{load_tree(file)}}}};
-  const auto document = json_in(file);
+  const internal::JsonDocument<Json> json = json_in(file);
   return blame_file<Json::exception>(file, [&]() -> std::vector<ViewItem> {
-    const Json& json = document;
     if (json.is_object() && json.value("format", "") == "spherule-report") {
       return report_items(json, file);
     }

@@ -27,7 +27,7 @@ std::vector<Sphere> spheres_of(const Json& list, const std::string& file);
 
 // The JSON in a file whose name ends with .json; null for other files. Throws Error, naming the
 // file, for what internal::parse_json() refuses.
-Json json_in(const std::filesystem::path& file);
+internal::JsonDocument<Json> json_in(const std::filesystem::path& file);
 
 // What a file holds that is of no robot: a mesh, SPHERES.json, a tree, the report of a fit
 // (external spheres, levels, the leak), or what `audit --json` printed. Throws Error, naming the

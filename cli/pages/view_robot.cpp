@@ -219,8 +219,7 @@ bool is_robot_file(const std::string& file) {
   if (has_mesh_ending(file)) return false;
   const std::string ending = lower_ending(file);
   if (ending == ".json") {
-    const auto document = json_in(file);
-    const Json& json = document;
+    const internal::JsonDocument<Json> json = json_in(file);
     if (is_by_links(json)) return true;
     const bool ours = json.is_object() && (json.contains("deepest_leak") ||
                                            json.value("format", Json()) == "spherule-report" ||

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/robots/check_report.h"
 
+#include "base/threads.h"
 #include "cli/robots/trajectory.h"
 #include "cli/text/json.h"
 #include "cli/text/print.h"
@@ -9,7 +10,6 @@
 #include <cstdint>
 #include <iterator>
 #include <span>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -390,10 +390,8 @@ std::string check_table(const CheckReport& report, const Json& json) {
 }
 
 std::vector<RobotChecker::Scratch> make_scratches(const RobotChecker& checker, int threads) {
-  const unsigned count = threads > 0 ? static_cast<unsigned>(threads)
-                                     : std::max(1u, std::thread::hardware_concurrency());
   std::vector<RobotChecker::Scratch> scratches;
-  for (unsigned i = 0; i < count; ++i) scratches.emplace_back(checker);
+  for (std::size_t i = 0; i < internal::thread_count(threads); ++i) scratches.emplace_back(checker);
   return scratches;
 }
 

@@ -38,9 +38,9 @@ const Json& value_at(const Json& report, std::string_view path) {
   while (!path.empty()) {
     const std::string key(path.substr(0, path.find('.')));
     path.remove_prefix(std::min(path.size(), key.size() + 1));
-    const auto found = value->is_array() ? value->begin() + std::stol(key) : value->find(key);
-    if (found == value->end()) return kNothing;
-    value = &*found;
+    const Json::json_pointer here("/" + key);
+    if (!value->contains(here)) return kNothing;
+    value = &value->at(here);
   }
   return *value;
 }

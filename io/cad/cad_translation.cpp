@@ -53,6 +53,7 @@
 #include <mutex>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace spherule::internal {
 namespace {

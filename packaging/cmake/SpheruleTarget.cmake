@@ -10,11 +10,10 @@ include(SpherulePrecompiled)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/spherule SYMBOLIC)
 
-# Compile options of a TARGET that is no library (KIND as below): SPHERULE_PROGRAM_OPTIONS, after -O1 for the
-# command and bindings, which read, call the libraries and print: -O1 makes them as fast, and compiles in
-# half the time.
+# Compile options of a TARGET that is no library (KIND as below): SPHERULE_PROGRAM_OPTIONS, after -O1 for
+# bindings, which call the libraries and convert: -O1 makes them as fast, and compiles in half the time.
 function(spherule_program_options target kind)
-  if("${kind}" MATCHES "^(command|binding)$")
+  if("${kind}" MATCHES "^binding$")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   if(NOT "${kind}" STREQUAL "library")

@@ -101,7 +101,7 @@ struct Sharing {
 };
 
 // Calls `judge(configurations, scratch, answers)` for all of them, a piece at a time, as
-// share_work() does: on a thread for each scratch, of which the caller's is one. Throws Error, too,
+// share_work() does: on at most one thread for each scratch. Throws Error, too,
 // if there is no scratch. The sizes are those of require_sizes().
 template <class Scratch, class Judge>
 void share_configurations(std::span<const double> configurations, std::size_t variables,

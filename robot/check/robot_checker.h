@@ -169,7 +169,7 @@ class RobotChecker {
   // every answer; after an Error the answers mean nothing.
   void check_configs(std::span<const double> configurations, Scratch& scratch,
                      std::span<std::uint8_t> free) const;
-  // check_configs() on several threads, one for each scratch, of which the caller's is one: the
+  // check_configs() on as many threads as oneTBB gives, at most one for each scratch: the
   // same answers, and the same Error. Throws Error, too, if there is no scratch. Allocates.
   void check_configs(std::span<const double> configurations, std::span<Scratch> scratches,
                      std::span<std::uint8_t> free) const;
@@ -187,8 +187,8 @@ class RobotChecker {
                         const EdgeRequest& request = {}) const;
 
   // check_edge() for many motions, each from from[i] to to[i], which lie one behind the other: the
-  // edges of a path of n configurations are those from the first n - 1 to the last n - 1. One
-  // thread for each scratch, as above.
+  // edges of a path of n configurations are those from the first n - 1 to the last n - 1. At
+  // most one thread for each scratch, as above.
   std::vector<EdgeResult> check_edges(std::span<const double> from, std::span<const double> to,
                                       std::span<Scratch> scratches,
                                       const EdgeRequest& request = {}) const;

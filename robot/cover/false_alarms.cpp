@@ -9,10 +9,12 @@
 #include "spheretree/build.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace spherule {
@@ -36,6 +38,7 @@ FalseAlarms measure(const RobotModel& robot, std::span<const LinkBody> bodies,
 
 std::string_view name_of(PairProofs proofs) {
   constexpr std::array<std::string_view, 3> kNames = {"none", "never", "boxes"};
+  static_assert(kNames.size() == static_cast<std::size_t>(PairProofs::kBoxes) + 1);
   return kNames[static_cast<std::size_t>(proofs)];
 }
 

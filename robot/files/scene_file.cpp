@@ -284,7 +284,7 @@ class SceneReader {
 }  // namespace
 
 SceneDescription read_scene(const fs::path& path) {
-  const Json document = internal::parse_json<Json>(
+  const auto document = internal::parse_json<Json>(
       read_file(path), [&](const std::string& reason) { throw Error(path.string(), reason); });
   return SceneReader(path, document).read();
 }

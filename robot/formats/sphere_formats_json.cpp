@@ -96,7 +96,7 @@ std::map<std::string, double> read_buffers(const Value& document, const char* ke
 
 void read_own(const Value& document, Reader& reader) {
   const Value version = document.at("version");
-  version.expect(version.json().is_number_unsigned() && version.json() >= 1,
+  version.expect(version.json().is_number_unsigned() && version.json() >= 1U,
                  "is not a positive integer");
   document.unless(version.json() <= kVersion, "has format version " + version.json().dump() +
                                                   "; this program reads versions up to " +
@@ -171,7 +171,7 @@ SphereFormatFile read_sphere_json(std::string_view text, const std::filesystem::
                                   const SphereReadOptions& options) {
   Reader reader(path.string());
   const std::string& file = reader.gathered.file();
-  const Json document = parse_json<Json>(
+  const auto document = parse_json<Json>(
       text, [&](const std::string& reason) { reader.gathered.refuse({}, reason); });
   const Value root(document, file);
   const auto one_mesh = [&] { reader.gathered.begin_link(options.link, ""); };

@@ -32,6 +32,7 @@ std::string_view name_of(AllowedReason reason) {
                                                       "always in the sample",
                                                       "proved never",
                                                       "free in boxes"};
+  static_assert(kNames.size() == static_cast<std::size_t>(AllowedReason::kFreeInBoxes) + 1);
   return kNames[static_cast<std::size_t>(reason)];
 }
 

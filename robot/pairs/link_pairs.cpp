@@ -13,6 +13,7 @@
 #include "robot/pairs/proof_scope.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -20,6 +21,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace spherule {
@@ -106,6 +108,7 @@ void append(std::string& bytes, const Eigen::Vector3d& v) {
 
 std::string_view name_of(PairVerdict verdict) {
   constexpr std::array<std::string_view, 3> kNames = {"never", "touching", "unknown"};
+  static_assert(kNames.size() == static_cast<std::size_t>(PairVerdict::kUnknown) + 1);
   return kNames[static_cast<std::size_t>(verdict)];
 }
 

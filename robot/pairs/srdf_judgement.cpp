@@ -30,6 +30,7 @@ DisabledVerdict verdict_of(PairVerdict verdict) {
 std::string_view name_of(DisabledVerdict verdict) {
   constexpr std::array<std::string_view, 7> kNames = {
       "touches", "unknown", "never", "adjacent", "rigid", "no body", "of another robot"};
+  static_assert(kNames.size() == static_cast<std::size_t>(DisabledVerdict::kOtherRobot) + 1);
   return kNames[static_cast<std::size_t>(verdict)];
 }
 

@@ -25,7 +25,7 @@
 namespace spherule {
 
 // A lower and an upper bound of a length: proved in a Certificate, true up to rounding in a
-// MeshDeviation (bench/baseline/mesh_deviation.h).
+// MeshDeviation (bench/baseline/mesh_methods.h).
 struct Bounds {
   double lower = 0.0;
   double upper = 0.0;

@@ -10,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
+#include <set>
 #include <string>
+#include <string_view>
 
 namespace spherule::test {
 
@@ -31,11 +33,18 @@ class FuzzCorpus : public testing::TestWithParam<FuzzTarget> {
       return true;
     } catch (const Error& error) {
       EXPECT_FALSE(error.subject().empty() || error.reason().empty()) << error.what();
+      if (is_mesh()) EXPECT_EQ(error.subject(), file_.string());
       return false;
     }
   }
 
  private:
+  static bool is_mesh() {
+    static const std::set<std::string_view> kMeshes = {"stl", "obj",  "ply", "off", "3mf",
+                                                       "dae", "gltf", "glb", "3mf_model"};
+    return kMeshes.contains(GetParam().name);
+  }
+
   TempDir folder_;
   std::filesystem::path file_ = folder_.path() / ("input" + std::string(GetParam().extension));
 };

@@ -329,7 +329,7 @@ TEST(RobotSpheres, RefusesBadOptionsAndNamesThem) {
   expect({.links = {{"link0", {.max_error = 0.0}}}}, "link 'link0' max error: must be positive");
   expect({.links = {{"link0", {.padding = -0.1}}}}, "link 'link0' padding: must be");
   const Zone useless{.shape = Sphere{.center = {0, 0, 0}, .radius = 1.0}};
-  expect({.links = {{"link2", {.zones = {useless}}}}}, "link 'link2': zone 0");
+  expect({.links = {{"link2", {.zones = {useless}}}}}, "link 'link2', zone 0");
 
   robot.links[2].collision[0].geometry = Box{{300, 300, 300}};
   expect({}, " m across");

@@ -36,7 +36,8 @@ struct simple_partitioner {};
 // Loops know nothing of each other: each is isolated.
 struct task_group_context {
   enum kind_type { isolated };
-  explicit task_group_context(kind_type) {}
+  enum traits_type { fp_settings };
+  task_group_context(kind_type, traits_type) {}
 };
 
 // The number of threads is not limited: the results do not depend on it.
