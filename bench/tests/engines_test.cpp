@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/fcl_mesh_checker.h"
+#include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/workload.h"
 #include "bench/scenes/work_cell.h"
 #include "bench/studies/measure.h"

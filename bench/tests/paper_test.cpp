@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/paper/paper.h"
+
 #include "base/error.h"
 #include "bench/checkers/fcl_mesh_checker.h"
-#include "bench/paper/paper.h"
 #include "tests/support/effort.h"
 #include "tests/support/mesh_facts.h"
 #include "tests/support/shapes.h"

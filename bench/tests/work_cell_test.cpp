@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/scenes/work_cell.h"
+
 #include "base/error.h"
 #include "bench/checkers/workload.h"
-#include "bench/scenes/work_cell.h"
 #include "tests/support/mesh_facts.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"

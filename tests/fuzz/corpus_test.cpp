@@ -40,7 +40,7 @@ class FuzzCorpus : public testing::TestWithParam<FuzzTarget> {
 
  private:
   static bool is_mesh() {
-    static const std::set<std::string_view> kMeshes = {"stl", "obj",  "ply", "off", "3mf",
+    static const std::set<std::string_view> kMeshes = {"stl", "obj",  "ply", "off",      "3mf",
                                                        "dae", "gltf", "glb", "3mf_model"};
     return kMeshes.contains(GetParam().name);
   }
