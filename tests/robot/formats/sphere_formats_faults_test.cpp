@@ -169,7 +169,7 @@ TEST_F(SphereFormatFaults, Json) {
            {own("2"), "has format version 2"},
            {own("1"), "\"robot\" is missing"},
            {links(R"({"link": "a", "spheres": [{"center": [0, 0, 0], "radius": -1}]})"),
-            "link \"a\", sphere 0: is negative"},
+            "link \"a\", sphere 0 is negative"},
            {links(R"({"link": "a", "spheres": []}, {"link": "a", "spheres": []})"), "there twice"},
            {R"({"format": "spherule-spheres", "version": 1})", "\"spheres\" is missing"}}) {
     expect_refusal(text, reason);
