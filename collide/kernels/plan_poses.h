@@ -183,7 +183,7 @@ SPHERULE_INLINE Point<Real> velocity_of(const PlanTwist<Real>& twist, const Poin
 // plan_kernel_impl.h.
 //
 // Coordinates are computed in double: those of positions up to 100 err by less than 1e-13 of a
-// cell, for which free_cells.cpp has room.
+// cell, for which plan_trees.cpp has room.
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -80,7 +80,7 @@ struct MechanismCheckOptions {
 // test before an exact one. For each configuration it finds either that no two spheres of a pair
 // touch, or that some do, for sure; where rounding leaves that uncertain it calls `confirm`.
 //
-// Proof in mechanism/mechanism_parts.cpp. Exactness is meant with respect to any poses of the
+// Proof in mechanism/mechanism_check.cpp. Exactness is meant with respect to any poses of the
 // bodies that are within `pose_error` of those of the exact mechanism: the largest distance of a
 // point of the body, in the unit of the trees. Bodies on one frame, and obstacles, that are tested
 // against the same are searched as one tree. Immutable; threads may share it, each with a scratch

@@ -30,7 +30,7 @@ inline const std::array<Eigen::Vector3d, 8> kRayDirections = {
 
 // The inside of a mesh and its connected components. Triangles are connected where they share a
 // vertex position. The inside is where the winding number of any closed surface
-// (mesh_shells.h) is not zero, whatever others count there: so where closed parts overlap that are
+// (shells.h) is not zero, whatever others count there: so where closed parts overlap that are
 // turned differently, and in a sealed hollow.
 class MeshInside {
  public:

@@ -87,7 +87,7 @@ namespace {
 // Of T (relative_pose.h), which bounds what S bounds in mesh_kernel_impl.h: a placed centre errs by
 // 136 u T and one rounding to single; 25 v T for the tests; 2 v r for the radius and 8 v r for the
 // factor; and c = 6 v T. What is found apart is so by more than c then, and the canonical test
-// finds it apart, too: where the mesh's lanes are numbers, because of sphere_triangle.h, which
+// finds it apart, too: where the mesh's lanes are numbers, because of triangle_leaves.h, which
 // requires 2 v S and a distance of 4 v S; where not, because the leaf's sphere is what is apart.
 // 48 v T covers it, and the absolute term what underflows (packed_tree.h). A clearance is part of
 // every radius and of T, rounded up once; the margin is that of the growth without it.

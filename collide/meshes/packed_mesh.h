@@ -116,7 +116,7 @@ MeshKernel avx512_mesh_kernel();
 // lanes of not-a-numbers instead, which nothing finds apart; boxes hold their spheres.
 class PackedMesh {
  public:
-  // Below this a triangle is as good as a segment, see sphere_triangle.h.
+  // Below this a triangle is as good as a segment, see triangle_leaves.h.
   static constexpr double kLowest = 0x1p-24;
 
   // `spheres` enclose the triangles one by one.

@@ -124,7 +124,7 @@ class TrianglePairLeaves {
 // do not do, the triangles are near each other, or one hull reaches into the other.
 //
 // For any axis n the least n.x - n.y over all corners x and y, as computed here, errs by 68 u |n| S
-// for the corners (triangle_pair.h), 3 u |n| S for each of the two images of n, 3 u |n| S for each
+// for the corners (triangles.h), 3 u |n| S for each of the two images of n, 3 u |n| S for each
 // product and 6 u |n| S for the shift and the sums: less than kPad u |n| S.
 class HullSearch {
  public:

@@ -39,7 +39,7 @@ inline bool is_periodic(const Joint& joint) {
 // turn, up to rounding, goes as given, or by whole turns less.
 //
 // The angle is a rounded number, because 2 pi is none: for |from| and |to| of at most 100 it is
-// within kTurnError of `to` less whole turns (the bound stands in shortest_motion.cpp). Checks of
+// within kTurnError of `to` less whole turns (the bound stands in kinematics.cpp). Checks of
 // motions (RobotChecker) charge that, so that what they prove holds for the exact motion.
 double nearest_turn(double from, double to);
 

@@ -29,7 +29,7 @@ struct LinkPieces {
 
   std::vector<Node> nodes;              // the root first
   std::vector<Eigen::Vector3d> points;  // of the pieces
-  // Corners of the bodies, of very many few (hull_corners.h): each point of any body lies within
+  // Corners of the bodies, of very many few (HullCorners): each point of any body lies within
   // hull_radius of their convex hull.
   std::vector<Eigen::Vector3d> hull;
   double hull_radius = 0.0;

@@ -133,13 +133,13 @@ class SphereDisplacement {
 
 // The free space of a sphere of radius rho around a mesh, as a sparse octree over a cube that
 // leaves the sphere room on every side of the mesh; rho and the finest step h are those of the
-// place (local_diameter.h). Cells are examined from coarse to fine, so that memory grows with the
+// place (LocalDiameter). Cells are examined from coarse to fine, so that memory grows with the
 // surface over the square of the finest step, not with the volume:
 //  - a coarse cell all of whose points have clearance >= rho + 1.2 h is free as a whole;
 //  - a cell all of whose points have clearance < rho is blocked;
 //  - a finest cell, of edge h, is a node: free if the clearance at its centre is at least rho;
 //  - a larger one beside a flat or convex surface has a sphere of its own, if one is found that
-//    holds every point of clearance >= rho in the cell (sphere_of_places.h), and whose centre lies
+//    holds every point of clearance >= rho in the cell (SphereOfPlaces), and whose centre lies
 //    in a free coarse cell or outside of the cube. It is reached if its sphere is, and is not
 //    halved.
 // No cell is halved that blocked ones separate from the outside, as inside of a closed part.
@@ -175,7 +175,7 @@ class FloodGrid {
   // Marks the cells that the sphere reaches from outside the cube. A step between two nodes counts
   // only if the sphere provably passes along the segment between their centres, whose length is h:
   // (d1 + d2 - h) / 2 >= rho, the greatest on that segment; or, where that makes a difference, by
-  // bisection (sphere_displacement.h). A step between two coarse free cells always passes, through
+  // bisection (SphereDisplacement). A step between two coarse free cells always passes, through
   // their common face. So does one between a node and a coarse free cell where rho is the same: on
   // the segment of h / 2 to the common face the clearance is at least half of d1 + rho + 0.7 h, so
   // at least rho. Where zones make a difference, that segment is examined.

@@ -18,7 +18,7 @@
 // *possible* if its clearance may be T somewhere: the clearance at its centre, rounded up, and half
 // its diagonal make the least T in it; a coarse leaf that is free is, one that is blocked, or that
 // blocked ones separate from the outside, is not. The places of a leaf with a sphere of its own lie
-// in that sphere (sphere_of_places.h), so that none is on a face of it which the sphere does not
+// in that sphere (flood_refinement.h), so that none is on a face of it which the sphere does not
 // meet, or, of two such leaves, on their common face if their spheres do not intersect. The path of
 // the centre to a place of R passes possible leaves alone. Where it passes an edge or a corner,
 // each leaf there holds the point and so is possible or reached: it can be taken to pass from leaf

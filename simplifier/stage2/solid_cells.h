@@ -25,7 +25,7 @@ class SolidCells {
   // Halves the box of S until a cell lies outside of S (it is forgotten) or its half diagonal is at
   // most the `share` of E plus half the clearance, since a sphere that covers part of the deep
   // inside covers much of it, or the share of how far spheres reach along the boundary there
-  // (surface_extent.h; `widest_cap` times E at most). So the number of cells grows with the edges
+  // (`widest_cap` times E at most). So the number of cells grows with the edges
   // and thin parts of S over E, and where S is flat only with its area over E times the radius of
   // the largest spheres in it. This and the other lengths below hold where E does, and shrink with
   // the error in zones.
