@@ -24,7 +24,6 @@ THIRD_PARTIES = {
     'nlohmann/': ['base', 'io', 'simplifier', 'robot', 'cli', 'python', 'tests', 'bench'],
     'tbb/': ['base/threads', 'simplifier', 'tests', 'bench'],
     'tinyxml2.h': ['io', 'robot', 'tests'],
-    'expat.h': ['io'],
     'zlib.h': ['io', 'tests'],
     'yaml-cpp/': ['robot/formats'],
     'CLI/': ['cli', 'bench'],
@@ -170,6 +169,22 @@ class Structure(unittest.TestCase):
         cmakes = {library: files[library + '/CMakeLists.txt'] for library in LIBRARIES
                   if library + '/CMakeLists.txt' in files}
         self.assertEqual([], problems_of(files, cmakes))
+
+    # In comments and in the pages: a citation outlives the file easily.
+    def test_cited_files_exist(self):
+        texts = sources()
+        names = {pathlib.PurePath(name).name for name in texts}
+        for page in ROOT.glob('**/README.md'):
+            if 'build' not in page.parts:
+                texts[str(page.relative_to(ROOT))] = page.read_text(encoding='utf-8')
+        missing = set()
+        for name, text in texts.items():
+            if name.startswith('tests/structure') or not name.endswith(('.h', '.cpp', '.md')):
+                continue
+            cited = re.findall(r'//[^"<\n]*?\b(\w+\.(?:h|cpp))\b' if name[-3:] != '.md' else
+                               r'`[\w./-]*?\b(\w+\.(?:h|cpp|py|js))`', text)
+            missing.update(f'{name}: {file}' for file in cited if file not in names)
+        self.assertEqual(set(), missing)
 
     def test_violations_are_found(self):
         start = '// ' + LICENCE + '\n#pragma once\n'
