@@ -7,12 +7,12 @@
 
 #include "spheretree/build.h"
 #include "spheretree/check.h"
+#include "tests/support/random.h"
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -21,31 +21,23 @@ namespace {
 using Eigen::Vector3d;
 using spherule::Sphere;
 using spherule::SphereTree;
-
-Vector3d point_in_cube(std::mt19937_64& random) {
-  const auto coordinate = [&random] {
-    return static_cast<double>(random() >> 11U) * 0x1p-52 - 1.0;
-  };
-  const double x = coordinate();
-  const double y = coordinate();
-  return {x, y, coordinate()};
-}
+using spherule::test::Random;
 
 // Radii of about the mean distance of neighbours, so that neighbours overlap.
 std::vector<Sphere> solid(std::size_t count) {
-  std::mt19937_64 random(1);
+  Random random(1);
   const double radius = std::cbrt(8.0 / static_cast<double>(count));
   std::vector<Sphere> spheres;
-  for (std::size_t i = 0; i < count; ++i) spheres.push_back({point_in_cube(random), radius});
+  for (std::size_t i = 0; i < count; ++i) spheres.push_back({random.point(1.0), radius});
   return spheres;
 }
 
 std::vector<Sphere> shell(std::size_t count) {
-  std::mt19937_64 random(2);
+  Random random(2);
   const double radius = std::sqrt(4.0 * 3.14 / static_cast<double>(count));
   std::vector<Sphere> spheres;
   while (spheres.size() < count) {
-    const Vector3d point = point_in_cube(random);
+    const Vector3d point = random.point(1.0);
     const double length = point.norm();
     if (length > 0.1 && length < 1.0) spheres.push_back({point / length, radius});
   }
@@ -54,9 +46,9 @@ std::vector<Sphere> shell(std::size_t count) {
 
 // One sphere in `share` moved by up to 0.3 of its radius along each axis.
 std::vector<Sphere> stirred(std::vector<Sphere> spheres, std::size_t share) {
-  std::mt19937_64 random(3);
+  Random random(3);
   for (Sphere& sphere : spheres) {
-    if (random() % share == 0) sphere.center += 0.3 * sphere.radius * point_in_cube(random);
+    if (random.index(share) == 0) sphere.center += 0.3 * sphere.radius * random.point(1.0);
   }
   return spheres;
 }

@@ -5,13 +5,13 @@
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
 #include "spheretree/build.h"
+#include "tests/support/random.h"
 
 #include <benchmark/benchmark.h>
 
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
 namespace spherule {
@@ -19,26 +19,7 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  Vector3d in_cube() { return {uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)}; }
-  Quaterniond rotation() {
-    for (;;) {
-      const Quaterniond q(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0),
-                          uniform(-1.0, 1.0));
-      if (q.squaredNorm() > 0.01 && q.squaredNorm() < 1.0) return q;
-    }
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
+using test::Random;
 
 // Overlapping spheres along the surface of a torus of radii 0.3 m and 0.1 m: as many thin shells
 // with a hole in the middle as a robot link or a pipe has.
@@ -67,9 +48,10 @@ std::vector<PosePair> pose_pairs(const SphereTree& a, const SphereTree& b, doubl
   Random random(1);
   std::vector<PosePair> result;
   for (int i = 0; i < 256; ++i) {
-    const Pose pose_a(random.rotation(), random.in_cube());
+    const Quaterniond rotation_a = random.rotation();
+    const Pose pose_a(rotation_a, random.point(1.0));
     const Quaterniond rotation_b = random.rotation();
-    const Vector3d direction = random.in_cube().normalized();
+    const Vector3d direction = random.direction();
     const auto at = [&](double distance) {
       return Pose(rotation_b, pose_a.translation() + distance * direction);
     };
@@ -144,7 +126,7 @@ void BM_WhereAreTheLinks(benchmark::State& state) {
     Joint joint;
     joint.name = "joint_" + std::to_string(i + 1);
     joint.type = JointType::kRevolute;
-    joint.parent_from_joint = Pose::from_translation(random.in_cube());
+    joint.parent_from_joint = Pose::from_translation(random.point(1.0));
     joint.axis = i % 2 == 0 ? Vector3d::UnitZ() : Vector3d::UnitY();
     joint.lower = -3.0;
     joint.upper = 3.0;
@@ -153,7 +135,7 @@ void BM_WhereAreTheLinks(benchmark::State& state) {
   }
   std::vector<std::array<double, 6>> configurations(256);
   for (auto& configuration : configurations) {
-    for (double& position : configuration) position = random.uniform(-3.0, 3.0);
+    for (double& position : configuration) position = random.between(-3.0, 3.0);
   }
   std::vector<Pose> world_from_link;
   std::size_t i = 0;
