@@ -74,7 +74,7 @@ class Obstacles {
     name_ = name;
     link_ = link;
     pose_ = pose;
-    std::visit([this](const auto& source) { add(source); }, shape);
+    std::visit([this](const auto& source) { this->add(source); }, shape);
   }
   void add(const MeshFile& file) { add_shape(file, {}); }
   void add(const Primitive& primitive) {
