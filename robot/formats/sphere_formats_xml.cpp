@@ -98,12 +98,14 @@ std::map<std::string, SphereLeaf> sphere_leaves(const XmlElement& robot) {
   return leaves;
 }
 
-// Takes out the links that stand for spheres of links in `covered`, and their joints.
+// Takes out the links that stand for spheres of links in `covered`, and their joints; not those
+// that have spheres of their own there.
 void remove_leaves(XMLElement& robot, const std::map<std::string, SphereLeaf>& leaves,
                    const std::set<std::string>& covered) {
   const auto goes = [&](const char* name) {
     const auto leaf = leaves.find(name);
-    return leaf != leaves.end() && covered.contains(leaf->second.parent);
+    return leaf != leaves.end() && covered.contains(leaf->second.parent) &&
+           !covered.contains(leaf->first);
   };
   XMLElement* next = nullptr;
   for (XMLElement* part = robot.FirstChildElement(); part; part = next) {

@@ -302,6 +302,21 @@ TEST_F(KeptFiles, SpheresThatAreSwitchedOffOrOfOtherLinksStay) {
   EXPECT_EQ(written(SphereFormat::kXrdf, kXrdf + "\n" + held), kXrdf + kSpheres + held);
 }
 
+// Links that are named like stand-ins of spheres, but have spheres of their own.
+TEST_F(KeptFiles, UrdfKeepsLinksWithSpheresOfTheirOwn) {
+  const std::filesystem::path urdf = folder_.write("robot.urdf", R"(<robot name="r">
+  <link name="a"/>
+  <link name="a_sphere0"><collision><geometry><sphere radius="1"/></geometry></collision></link>
+  <joint name="j" type="fixed"><parent link="a"/><child link="a_sphere0"/></joint>
+</robot>)");
+  const RobotSpheres spheres{.links = {{"a", {}}, {"a_sphere0", {{{0, 0, 0}, 1}}}}};
+  write_robot_spheres(spheres, SphereFormat::kUrdf, {.urdf = urdf}, out_);
+  const std::string text = read_file(out_);
+  EXPECT_NE(text.find("<link name=\"a_sphere0\">"), std::string::npos) << text;
+  EXPECT_NE(text.find("<child link=\"a_sphere0\""), std::string::npos) << text;
+  EXPECT_NE(text.find("<sphere radius=\"1\""), std::string::npos) << text;
+}
+
 TEST_F(KeptFiles, Srdf) {
   EXPECT_EQ(kept(SphereFormat::kSrdf, R"(<?xml version='1.0' ?>
 <!-- <robot> > -->
