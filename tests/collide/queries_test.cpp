@@ -450,7 +450,7 @@ TYPED_TEST(Pairs, AreThoseOfSingleSpheres) {
                                      : result.distance_lower_bound == 0.0);
     several += result.pairs.size() > 1;
   }
-  EXPECT_GT(several, effort(30, 2));
+  EXPECT_GT(several, effort(30, 0));
 }
 
 TYPED_TEST(Pairs, WithinLimitsAreSomeOfThemAndNeverFree) {

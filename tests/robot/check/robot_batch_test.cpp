@@ -154,8 +154,8 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
       }
     }
   }
-  EXPECT_GT(hits, static_cast<std::size_t>(effort(10000, 1000)));
-  EXPECT_GT(free, static_cast<std::size_t>(effort(10000, 1000)));
+  EXPECT_GT(hits, static_cast<std::size_t>(effort(10000, 100)));
+  EXPECT_GT(free, static_cast<std::size_t>(effort(10000, 100)));
 }
 
 // What is thrown is what one thread would meet first, whichever thread comes to which first.

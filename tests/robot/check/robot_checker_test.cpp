@@ -197,7 +197,7 @@ TEST(RobotChecker, ExplainsEveryPairThatTouches) {
     const auto one = checked.explain(q, {.max_contacts = 1});
     EXPECT_EQ(one.size(), std::min<std::size_t>(found.size(), 1));
   }
-  EXPECT_GT(contacts, effort(20, 3));
+  EXPECT_GT(contacts, effort(20, 1));
 }
 
 // Axes that point nearly backwards, and trees far from their frames, whose offsets cancel.
