@@ -33,7 +33,9 @@ class FuzzCorpus : public testing::TestWithParam<FuzzTarget> {
       return true;
     } catch (const Error& error) {
       EXPECT_FALSE(error.subject().empty() || error.reason().empty()) << error.what();
-      if (is_mesh()) EXPECT_EQ(error.subject(), file_.string());
+      if (is_mesh()) {
+        EXPECT_EQ(error.subject(), file_.string());
+      }
       return false;
     }
   }
