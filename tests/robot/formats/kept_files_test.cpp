@@ -314,7 +314,7 @@ TEST_F(KeptFiles, UrdfKeepsLinksWithSpheresOfTheirOwn) {
   const std::string text = read_file(out_);
   EXPECT_NE(text.find("<link name=\"a_sphere0\">"), std::string::npos) << text;
   EXPECT_NE(text.find("<child link=\"a_sphere0\""), std::string::npos) << text;
-  EXPECT_NE(text.find("<sphere radius=\"1\""), std::string::npos) << text;
+  EXPECT_NE(text.find("<sphere radius=\"1.0\""), std::string::npos) << text;
 }
 
 TEST_F(KeptFiles, Srdf) {
