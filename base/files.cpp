@@ -236,8 +236,6 @@ fs::path absolute_path(const fs::path& path) {
 
 }  // namespace spherule
 
-extern char** environ;
-
 namespace spherule::internal {
 namespace {
 

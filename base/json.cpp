@@ -68,8 +68,8 @@ class JsonCheck : public Json::json_sax_t {
 template <class Json>
 JsonDocument<Json> parse_json(std::string_view text,
                               const std::function<void(const std::string&)>& refuse) {
-  constexpr bool is_ordered = std::is_same_v<Json, nlohmann::ordered_json>;
-  JsonCheck<Json> check(is_ordered ? kMostOrderedKeys : ~std::size_t{0});
+  constexpr bool kIsOrdered = std::is_same_v<Json, nlohmann::ordered_json>;
+  JsonCheck<Json> check(kIsOrdered ? kMostOrderedKeys : ~std::size_t{0});
   Json::sax_parse(text, &check);
   if (!check.fault().empty()) refuse(check.fault());
   return JsonDocument<Json>(Json::parse(text));

@@ -32,7 +32,8 @@ class JsonDocument : public Json {
   explicit JsonDocument(Json root) : Json(std::move(root)) {}
   JsonDocument(JsonDocument&&) noexcept = default;
   JsonDocument& operator=(JsonDocument&&) noexcept = default;
-  ~JsonDocument() { dismantle(*this); }
+  // Iterators throw only for values without parts.
+  ~JsonDocument() { dismantle(*this); }  // NOLINT(bugprone-exception-escape)
 
  private:
   // From the leaves to the root, at most kDeepestJson deep.
