@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spheretree/tree_file.h"
 
+#include "base/bytes.h"
 #include "base/crc64.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rounding.h"
 #include "spheretree/tree_bytes.h"
 
-#include <bit>
-#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 // The format is described in docs/tree-file.md; a change of one needs a change of the other.
 namespace spherule {
@@ -28,40 +29,22 @@ constexpr std::size_t kHeaderSize = 32;  // magic, byte-order mark, version, two
 constexpr std::size_t kNodeSize = 40;    // four doubles, two 32-bit integers
 constexpr std::size_t kChecksumSize = 8;
 
-template <std::unsigned_integral T>
-void append(std::string& bytes, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) {
-    bytes.push_back(static_cast<char>(value >> (8 * i) & 0xFFU));
-  }
+template <class Number>
+void append(std::string& bytes, const std::vector<Number>& numbers) {
+  for (const Number number : numbers) internal::append_number(bytes, number);
 }
 
 // The caller has made sure that the bytes are there.
-template <std::unsigned_integral T>
-T take(std::string_view& bytes) {
-  T value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) {
-    value |= static_cast<T>(static_cast<T>(static_cast<unsigned char>(bytes[i])) << (8 * i));
-  }
-  bytes.remove_prefix(sizeof(T));
-  return value;
+template <class Number>
+Number take(std::string_view& bytes) {
+  const auto number = internal::number_at<Number>(bytes.data());
+  bytes.remove_prefix(sizeof(Number));
+  return number;
 }
-
-void append(std::string& bytes, const std::vector<double>& values) {
-  for (const double value : values) append(bytes, std::bit_cast<std::uint64_t>(value));
-}
-void append(std::string& bytes, const std::vector<std::int32_t>& values) {
-  for (const std::int32_t value : values) append(bytes, std::bit_cast<std::uint32_t>(value));
-}
-
-void take(std::string_view& bytes, std::size_t count, std::vector<double>& values) {
-  values.resize(count);
-  for (double& value : values) value = std::bit_cast<double>(take<std::uint64_t>(bytes));
-}
-void take(std::string_view& bytes, std::size_t count, std::vector<std::int32_t>& values) {
-  values.resize(count);
-  for (std::int32_t& value : values) {
-    value = std::bit_cast<std::int32_t>(take<std::uint32_t>(bytes));
-  }
+template <class Number>
+void take(std::string_view& bytes, std::size_t count, std::vector<Number>& numbers) {
+  numbers.resize(count);
+  for (Number& number : numbers) number = take<Number>(bytes);
 }
 
 // Puts the sphere of every leaf at the index it names. A sphere that no leaf names, or two leaves
@@ -127,13 +110,13 @@ std::string internal::encode_tree(const SphereTree& tree) {
   std::string bytes;
   bytes.reserve(kHeaderSize + kNodeSize * data.radius.size() + kChecksumSize);
   bytes += kMagic;
-  append(bytes, kByteOrderMark);
-  append(bytes, kVersion);
-  append(bytes, std::uint64_t{data.spheres.size()});
-  append(bytes, std::uint64_t{data.radius.size()});
+  internal::append_number(bytes, kByteOrderMark);
+  internal::append_number(bytes, kVersion);
+  internal::append_number(bytes, std::uint64_t{data.spheres.size()});
+  internal::append_number(bytes, std::uint64_t{data.radius.size()});
   for (const auto* array : {&data.x, &data.y, &data.z, &data.radius}) append(bytes, *array);
   for (const auto* array : {&data.first_child, &data.child_count}) append(bytes, *array);
-  append(bytes, crc64(bytes));
+  internal::append_number(bytes, crc64(bytes));
   return bytes;
 }
 
