@@ -114,7 +114,7 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
   Random random(seeded(71));
   std::size_t hits = 0;
   std::size_t free = 0;
-  for (int i = 0; i < scaled(40, 6); ++i) {
+  for (int i = 0; i < scaled(40, 26); ++i) {
     const RobotModel robot = random_robot_with_trees(random, 0.3);
     const auto variables = static_cast<std::size_t>(robot.variable_count());
     if (variables == 0) continue;
@@ -154,8 +154,8 @@ TEST(RobotThreads, VerdictsAreThoseOfOneThread) {
       }
     }
   }
-  EXPECT_GT(hits, static_cast<std::size_t>(effort(10000, 100)));
-  EXPECT_GT(free, static_cast<std::size_t>(effort(10000, 100)));
+  EXPECT_GT(hits, static_cast<std::size_t>(effort(10000, 1000)));
+  EXPECT_GT(free, static_cast<std::size_t>(effort(10000, 1000)));
 }
 
 // What is thrown is what one thread would meet first, whichever thread comes to which first.
