@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -37,6 +38,14 @@ struct EdgeMeasurement {
   double p99_ns = 0.0;
 };
 
+// Every so manieth configuration of a program, in its order and in a random one: what an engine
+// remembers of a path must not cost more than it saves.
+struct StepMeasurement {
+  std::size_t step = 1;
+  std::vector<Measurement> methods;  // of kPathMethods
+};
+constexpr std::array<TreeMode, 2> kPathMethods{TreeMode::kSingle, TreeMode::kBatch};
+
 // One line of the table.
 struct MethodResult {
   std::string name;
@@ -54,6 +63,7 @@ struct WorkloadResult {
   std::vector<FitRecord> fits;
   std::vector<MethodResult> methods;
   EdgeMeasurement edges = {};
+  std::vector<StepMeasurement> steps = {};
   // The rows of the studies by name (studies/study.h).
   nlohmann::ordered_json studies = {};
 };
@@ -121,6 +131,13 @@ Json to_json(const WorkloadResult& result) {
                    {"unknown", edges.unknown},     {"unknown_but_free", edges.unknown_but_free},
                    {"median_ns", edges.median_ns}, {"p95_ns", edges.p95_ns},
                    {"p99_ns", edges.p99_ns}};
+  for (const StepMeasurement& row : result.steps) {
+    json["steps"].push_back({{"step", row.step},
+                             {"single_ns", row.methods[0].ns_per_query},
+                             {"single_shuffled_ns", row.methods[0].shuffled_ns_per_query},
+                             {"batch_ns", row.methods[1].ns_per_query},
+                             {"batch_shuffled_ns", row.methods[1].shuffled_ns_per_query}});
+  }
   json["studies"] = result.studies;
   return json;
 }
@@ -136,6 +153,7 @@ WorkloadResult evaluate(const Workload& workload, std::vector<FitRecord> fits,
                         .fits = std::move(fits),
                         .methods = {},
                         .edges = {},
+                        .steps = {},
                         .studies = {}};
   std::vector<std::uint8_t> truth;
   for (const std::uint32_t bits : touching_bodies) truth.push_back(bits != 0 ? 1 : 0);
@@ -207,6 +225,16 @@ void print_table(const WorkloadResult& result) {
       edges.free, edges.collision, edges.unknown, edges.unknown_but_free, edges.median_ns,
       edges.p95_ns, edges.p99_ns, edges.median_ns / single, edges.p95_ns / single,
       edges.p99_ns / single);
+  std::printf("\nlonger steps, ns/query %10s %9s %6s %10s %9s %6s\n", "single", "shuffled", "ratio",
+              "batch", "shuffled", "ratio");
+  for (const StepMeasurement& row : result.steps) {
+    std::printf("%20zu x", row.step);
+    for (const Measurement& m : row.methods) {
+      std::printf(" %10.1f %9.1f %6.2f", m.ns_per_query, m.shuffled_ns_per_query,
+                  m.ns_per_query / m.shuffled_ns_per_query);
+    }
+    std::printf("\n");
+  }
   std::fflush(stdout);
 }
 
@@ -311,6 +339,19 @@ EdgeMeasurement measure_edges(const Workload& workload) {
   return result;
 }
 
+std::vector<StepMeasurement> measure_steps(const Workload& workload, int rounds) {
+  std::vector<Method> methods;
+  for (const TreeMode mode : kPathMethods) {
+    methods.push_back({.name = {}, .setting = {}, .checker = make_tree_checker(workload, mode)});
+  }
+  std::vector<StepMeasurement> rows;
+  for (const std::size_t step : {1, 2, 4, 8, 16, 32}) {
+    const MeasureOptions options{.rounds = rounds * static_cast<int>(step), .stride = step};
+    rows.push_back({step, measure(methods, workload.program, options)});
+  }
+  return rows;
+}
+
 struct Arguments {
   std::filesystem::path out = "bench/out";
   bool quick = false;
@@ -360,6 +401,7 @@ WorkloadResult run(Workload workload, const Arguments& arguments) {
   WorkloadResult result =
       evaluate(workload, std::move(fits), methods, std::move(measurements), touching);
   result.edges = measure_edges(workload);
+  result.steps = measure_steps(workload, options.rounds);
   print_table(result);
   check_nothing_missed(result);
 #ifdef SPHERULE_BENCH_STUDIES

@@ -107,6 +107,18 @@ constexpr double kMore = 1.25;
 constexpr float kLess = 0.5F;
 constexpr int kMostTests = 2;
 
+// What a query saves by the cache, in searches of a configuration, measured roughly: if that alone
+// answers; if bodies that are grown are apart; if they are searched as they are after all; if
+// nothing was tried; of a motion, if it proves it, and if it does not. Where the cache has cost
+// more than it saved by kMostLost, it pauses.
+constexpr double kFromMemory = 0.75;
+constexpr double kGrown = -0.5;
+constexpr double kGrownInVain = -1.5;
+constexpr double kNotTried = -0.5;
+constexpr double kMostLost = 8.0;
+constexpr double kFirstPause = 64.0;
+constexpr double kLongestPause = 4096.0;
+
 // The way starts anew beyond 2^10 near steps: every addition errs by less than 2^-42 near steps,
 // which kStepRest, a part of every step, covers. So do the sums that it is compared with.
 constexpr double kStepUp = 1.0 + 1e-9;
@@ -152,6 +164,7 @@ CoherenceCache::CoherenceCache(const KernelProblem& problem, std::span<const dou
     : reach_(reaches(problem)),
       near_step_(kNearStep * largest(reach)),
       last_(reach_.size(), 1e300),
+      next_pause_(kFirstPause),
       contact_(problem.frames, static_cast<std::size_t>(problem.frame_count),
                4.0 * largest(tilt) * std::max(1.0, largest(reach))),
       is_due_(static_cast<std::size_t>(problem.body_count), 0) {
@@ -196,6 +209,17 @@ void CoherenceCache::forget() {
   knows_ = false;
 }
 
+// Books what a query has saved.
+void CoherenceCache::account(double saved) {
+  saved_ = std::min(saved_ + saved, kMostLost);
+  if (saved_ >= kMostLost) next_pause_ = kFirstPause;
+  if (saved_ > -kMostLost) return;
+  forget();
+  saved_ = 0.0;
+  pause_ = next_pause_;
+  next_pause_ = std::min(2.0 * next_pause_, kLongestPause);
+}
+
 // Lists the bodies that may have moved by more than their clearance; false if there are none.
 bool CoherenceCache::find_due(const double* configuration) {
   due_.clear();
@@ -223,11 +247,6 @@ bool CoherenceCache::find_due(const double* configuration) {
 // are due no more. True if one touches for sure.
 bool CoherenceCache::grow_due(const Kernels& kernels, const KernelProblem& problem,
                               const double* configuration, const KernelScratch& scratch) {
-  if (std::none_of(due_.begin(), due_.end(), [&](std::int32_t i) {
-        return bodies_[static_cast<std::size_t>(i)].wanted > 0.0F;
-      })) {
-    return false;
-  }
   kernels.place(problem, configuration, scratch);
   std::size_t left = 0;
   for (const std::int32_t index : due_) {
@@ -333,14 +352,34 @@ void CoherenceCache::place(const KernelProblem& problem, std::int32_t index,
 bool CoherenceCache::collides(const Kernels& kernels, const KernelProblem& problem,
                               const double* configuration, const KernelScratch& scratch,
                               ConfirmContact confirm, void* context) {
+  if (pause_ > 0.0) {
+    pause_ -= 1.0;
+    is_following_ = was_near_ = false;
+    return check(kernels, problem, configuration, scratch, confirm, context);
+  }
   if (!follow(configuration)) {
     return check(kernels, problem, configuration, scratch, confirm, context);
   }
-  if (depth_ >= 0.0 && contact_.way_to(configuration) <= depth_) return true;
+  if (depth_ >= 0.0 && contact_.way_to(configuration) <= depth_) {
+    account(kFromMemory);
+    return true;
+  }
   depth_ = -1.0;
-  if (!find_due(configuration)) return false;
-  if (grow_due(kernels, problem, configuration, scratch)) return true;
-  if (due_.empty()) return false;
+  if (!find_due(configuration)) {
+    account(kFromMemory);
+    return false;
+  }
+  const bool grows = std::any_of(due_.begin(), due_.end(), [&](std::int32_t i) {
+    return bodies_[static_cast<std::size_t>(i)].wanted > 0.0F;
+  });
+  if (grows && grow_due(kernels, problem, configuration, scratch)) {
+    account(kGrown);
+    return true;
+  }
+  if (due_.empty()) {
+    account(kGrown);
+    return false;
+  }
   pairs_.clear();
   for (const std::int32_t index : due_) is_due_[static_cast<std::size_t>(index)] = 1;
   for (std::int32_t i = 0; i < problem.pair_count; ++i) {
@@ -360,6 +399,7 @@ bool CoherenceCache::collides(const Kernels& kernels, const KernelProblem& probl
       place(problem, index, configuration, scratch, 0.0);
     }
   }
+  account(grows ? kGrownInVain : kNotTried);
   return touches;
 }
 

@@ -89,7 +89,9 @@ class MovedSphere {
 // Touching. Two things were found to go into each other by more than a depth; wherever the one of
 // them that moves has moved by less, they touch.
 //
-// Configurations that are far from the one before are searched as if there were no memory.
+// Configurations that are far from the one before are searched as if there were no memory. So are
+// those of a path in whose steps the memory has cost more than it saved, for a while, and for twice
+// as long when it is tried again in vain.
 class CoherenceCache {
  public:
   // `reach` and `tilt` of the bodies as in mechanism_parts.h.
@@ -134,6 +136,7 @@ class CoherenceCache {
              const KernelScratch& scratch, ConfirmContact confirm, void* context);
   bool follow(const double* configuration);
   void forget();
+  void account(double saved);
   bool find_due(const double* configuration);
   bool grow_due(const Kernels& kernels, const KernelProblem& problem, const double* configuration,
                 const KernelScratch& scratch);
@@ -155,6 +158,9 @@ class CoherenceCache {
   bool is_following_ = false;
   bool is_confirming_ = false;
   bool knows_ = false;
+  double saved_ = 0.0;  // in searches of a configuration
+  double pause_ = 0.0;  // for so many queries there is no memory
+  double next_pause_;   // the length of the next one
   MovedSphere contact_;
   double depth_ = -1.0;
   std::vector<std::int32_t> due_;  // bodies

@@ -31,8 +31,12 @@
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-// Up to this part of its radius a body may be grown for a search of several configurations.
-constexpr float kLargestInflation = 0.25F;
+// Up to KernelMemory::widest, a part of its radius, a body is grown for a search of several
+// configurations: less after a search that finds so many pairs of leaves for each of them that
+// single searches cost less, a little more after each time that it was too little.
+constexpr float kWidest = 0.25F;
+constexpr float kWiden = 1.0F + 0x1p-5F;
+constexpr std::int32_t kManyFound = 8;
 constexpr float kLooser = 1.0F + 0x1p-18F;
 // A body is grown by this many times what is needed, twice as many after each search that found
 // nothing; that is tried from kProbeFrom on, so not at once where something is near.
@@ -81,7 +85,14 @@ class BlockPair {
     const int middle = __builtin_ctz(upper);
     const KernelReference at = reference(middle);
     const float needed = displacement(at, live);
-    if (needed > kLargestInflation * body_.radius) {
+    const float widest = memory_.widest * body_.radius;
+    if (needed > widest) {
+      if (memory_.widest < kWidest) memory_.widest *= kWiden;
+      if (needed <= 2.0F * widest) {
+        settle(live & ~upper);
+        settle(upper);
+        return;
+      }
       for (; live != 0; live &= live - 1) settle_alone(__builtin_ctz(live));
       return;
     }
@@ -106,8 +117,12 @@ class BlockPair {
   bool search_all(const KernelReference& from, float inflation, unsigned live) {
     const Placement at = placement(from, inflation);
     LeafSearch search(body_, obstacle_, at, scratch_.queues);
-    if (!search.run()) return false;
+    const bool has_room = search.run();
     const std::int32_t found = search.found().count();
+    if (!has_room || found > kManyFound * __builtin_popcount(live)) {
+      memory_.widest = 0.5F * inflation / body_.radius;
+    }
+    if (!has_room) return false;
     if (found == 0) {
       remember(from, inflation);
       return true;

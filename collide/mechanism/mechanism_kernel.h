@@ -80,7 +80,8 @@ struct KernelMemory {
   KernelLeaves contact{};  // the last leaves that touched
   KernelReference pose{};  // there the body, grown by so much, is apart from the obstacle
   float inflation = 0.0F;
-  float ambition = 0.5F;  // by how many times as much as needed to grow the body
+  float ambition = 0.5F;   // by how many times as much as needed to grow the body
+  float widest = 0x1p-4F;  // up to this part of its radius it is grown for several configurations
 };
 
 // Of a frame: three columns and the origin.
