@@ -114,11 +114,11 @@ inline bool is_usable_point(const Eigen::Vector3d& p) {
 
 // Throws Error unless this thread rounds to nearest, as every proved bound presumes. build_tree(),
 // refit(), check(), load_tree(), place_external_spheres(), cover(), repair(), certify(),
-// prove_link_pairs(), prove_attached_pairs() and the constructors of PairCache,
-// MechanismCheck::Scratch and RobotChecker::Scratch call it, and so does what calls these; single
-// queries, enclosing_sphere() and readers of meshes do not. If the mode is changed after that
-// nothing is promised; in tests no contact was missed. Determined by sums, as std::fegetround()
-// does not see every floating-point unit of a processor.
+// prove_link_pairs(), prove_attached_pairs() and the constructors of PairCache and
+// RobotChecker::Scratch call it, and so does what calls these; single queries, enclosing_sphere()
+// and readers of meshes do not. If the mode is changed after that nothing is promised; in tests no
+// contact was missed. Determined by sums, as std::fegetround() does not see every floating-point
+// unit of a processor.
 void require_rounding_to_nearest();
 
 }  // namespace spherule

@@ -4,23 +4,32 @@
 // What a CheckPlan is compiled from, in double precision and in the frame of the mechanism's root.
 
 #include "collide/kernels/plan_trees.h"
-#include "collide/mechanism/mechanism_check.h"
 #include "collide/solids/primitive.h"
 #include "geometry/pose.h"
 
 #include <Eigen/Core>
 
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
 namespace spherule::internal {
 
 // Of a position in the middle of a part of a motion: rounded fractions of positions up to
-// MechanismCheck::kLargestVariable err by less than 9 u times that.
+// kLargestPosition err by less than 9 u times that.
 inline constexpr double kMiddleError = 1e-12;
 
 struct PlanSource {
+  // A frame that a position moves: at zero its pose in the parent frame is `parent_from_frame`;
+  // then it turns about its z axis by the position (radians), or is shifted along it.
+  struct Frame {
+    int parent = -1;  // an earlier frame, or -1 for the root
+    Pose parent_from_frame{};
+    int position = 0;
+    bool prismatic = false;
+  };
+
   // Spheres that move with a frame; -1: with the root.
   struct Body {
     int frame = -1;
@@ -60,7 +69,7 @@ struct PlanSource {
   };
   using Path = std::vector<PathStep>;
 
-  std::vector<MechanismFrame> frames{};  // `variable` is the index of a position
+  std::vector<Frame> frames{};
   std::vector<Body> bodies{};
   std::vector<Obstacle> obstacles{};
   // In the order in which they are made, as far as those of one body stay together.
@@ -71,5 +80,17 @@ struct PlanSource {
   // largest distance of a point.
   double pose_error = 0.0;
 };
+
+// One more than the largest index of a position that the frames name.
+int position_count(std::span<const PlanSource::Frame> frames);
+
+// From the root to a frame: the largest distance of its origin, and how many frames it takes.
+struct Chain {
+  double length = 0.0;
+  double frames = 0.0;
+};
+
+// Of every frame; throws Error for one of more than kLongestLaneChain frames.
+std::vector<Chain> chains_of(std::span<const PlanSource::Frame> frames);
 
 }  // namespace spherule::internal

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/rounding.h"
-#include "collide/mechanism/mechanism_parts.h"
+#include "collide/kernels/tree_kernel.h"
 #include "collide/search/packed_tree.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 // Error budget, v being the unit roundoff of Real (2^-24 or 2^-53); n frames lie between the root
 // and a body. No point of the body, and no centre of a node of its tree, is further from the root
-// than W: the lengths of the chain, kLargestVariable for each shift, and how far the tree reaches
+// than W: the lengths of the chain, kLargestPosition for each shift, and how far the tree reaches
 // in its frame. X bounds W for all bodies, and how far obstacles reach that are trees.
 //   placed centres (`error` of a body): 38 v n W and 12 v W of plan_poses.h, and in double what its
 //     sines err by, less than 5e-11 n W;
@@ -70,6 +70,27 @@ PlanFreeCells compiled_cells(const FreeCells* cells) {
 
 }  // namespace
 
+int position_count(std::span<const PlanSource::Frame> frames) {
+  int count = 0;
+  for (const PlanSource::Frame& frame : frames) count = std::max(count, frame.position + 1);
+  return count;
+}
+
+std::vector<Chain> chains_of(std::span<const PlanSource::Frame> frames) {
+  std::vector<Chain> chains;
+  for (const PlanSource::Frame& frame : frames) {
+    Chain chain = frame.parent < 0 ? Chain() : chains[static_cast<std::size_t>(frame.parent)];
+    chain.length +=
+        frame.parent_from_frame.translation().norm() + (frame.prismatic ? kLargestPosition : 0.0);
+    chain.frames += 1.0;
+    if (chain.frames > kLongestLaneChain) {
+      throw Error("robot", "too many joints stand on each other");
+    }
+    chains.push_back(chain);
+  }
+  return chains;
+}
+
 template <class Real>
 struct CompiledPlan<Real>::Reach {
   std::vector<Chain> chains;
@@ -106,7 +127,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
     reach.scene = std::max(reach.scene, reach_of(obstacle));
   }
   if (!(reach.scene <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
-  plan_.position_count = std::max(1, variable_count(source.frames));
+  plan_.position_count = std::max(1, position_count(source.frames));
   compile_frames(source);
   compile_bodies(source, reach);
   compile_obstacles(source, reach);
@@ -133,7 +154,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
   plan_.pair_paths = pair_paths_.data();
   plan_.steps = steps_.data();
   plan_.slides = std::any_of(source.frames.begin(), source.frames.end(),
-                             [](const MechanismFrame& frame) { return frame.prismatic; });
+                             [](const PlanSource::Frame& frame) { return frame.prismatic; });
   plan_.bound_slack = rounded_up<Real>(1.0 + (4.0 * static_cast<double>(longest_path_) + 32.0) * v);
   center_error_ = reach.largest_error;
   plan_.velocity_error = rounded_up<Real>(kVelocityErrors * center_error_);
@@ -142,7 +163,7 @@ CompiledPlan<Real>::CompiledPlan(const PlanSource& source) {
 template <class Real>
 void CompiledPlan<Real>::compile_frames(const PlanSource& source) {
   frames_.push_back(root_frame<Real>());
-  for (const MechanismFrame& frame : source.frames) {
+  for (const PlanSource::Frame& frame : source.frames) {
     PlanFrame<Real> compiled = root_frame<Real>();
     const Eigen::Matrix3d& rotation = frame.parent_from_frame.matrix();
     for (int i = 0; i < 3; ++i) {
@@ -153,7 +174,7 @@ void CompiledPlan<Real>::compile_frames(const PlanSource& source) {
       compiled.origin[i] = static_cast<Real>(frame.parent_from_frame.translation()[i]);
     }
     compiled.parent = frame.parent + 1;
-    compiled.position = frame.variable;
+    compiled.position = frame.position;
     compiled.prismatic = frame.prismatic;
     frames_.push_back(compiled);
   }

@@ -5,7 +5,7 @@
 // kernels, see plan_kernel_impl.h.
 //
 // Error budget of poses, v being the unit roundoff (2^-24 or 2^-53). A pair of sine and cosine errs
-// by less than 6 v in single precision, by less than 2e-11 in double (kernel_vectors.h).
+// by less than 6 v in single precision, by less than 2e-11 in double (vectors.h).
 // Of a frame in its parent's, over all nine entries of a rotation (Frobenius), besides the sines:
 //   the frame's rotation rounded           2 v
 //   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
@@ -22,7 +22,7 @@
 // (4 n + 16) v W for each rate, which is below the above, 38 n v W, too: 5 times that in all.
 
 #include "collide/kernels/plan_vectors.h"
-#include "collide/mechanism/kernel_vectors.h"
+#include "collide/kernels/vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -5,7 +5,7 @@
 // plan_kernel_impl.h.
 
 #include "collide/kernels/check_plan.h"
-#include "collide/mechanism/kernel_vectors.h"
+#include "collide/kernels/vectors.h"
 
 #include <cstdint>
 #include <type_traits>

@@ -2,7 +2,7 @@
 #pragma once
 
 // The kernels of packed_mesh.h, compiled once for each instruction set; what
-// kernel_block.h says of those holds here, too. The including file defines
+// tree_block.h says of those holds here, too. The including file defines
 // SPHERULE_KERNEL.
 //
 // Error budget, v = 2^-24. Let S bound the coordinates and the distance to the origin of every
@@ -23,7 +23,7 @@
 // is inside the sphere for sure if the margin is at least 2 (r' - r) and f and 16 v S are in r' -
 // r.
 
-#include "collide/mechanism/kernel_search.h"
+#include "collide/kernels/tree_search.h"
 #include "collide/meshes/packed_mesh.h"
 
 #include <cstddef>

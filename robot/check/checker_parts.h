@@ -36,11 +36,12 @@ struct RobotChecker::Parts {
         enforces_limits(options.enforce_limits),
         shortest(robot),
         pairs(std::move(all)),
-        lanes(pairs, options.instructions),
         bodies(std::move(body_names)),
         obstacles(std::move(obstacle_names)) {
+    const internal::RobotPlanSource source = internal::make_plan_source(pairs);
+    lanes.emplace(pairs, source, options.instructions);
     if (pairs.static_tree_pairs_begin() == pairs.pairs().size()) return;
-    static_trees.emplace(pairs, options.instructions);
+    static_trees.emplace(pairs, source, options.instructions);
   }
   // `lanes` and `static_trees` refer to `pairs`.
   Parts(const Parts&) = delete;
@@ -58,7 +59,7 @@ struct RobotChecker::Parts {
   // All pairs. Those from pairs.static_tree_pairs_begin() on are of static trees: `static_trees`
   // tests them in configurations.
   internal::BodyPairs pairs;
-  internal::LaneCheck lanes;  // of these
+  std::optional<internal::LaneCheck> lanes;  // of these
   std::optional<internal::StaticTrees> static_trees;
   std::vector<Named> bodies;     // of CheckedPiece::body
   std::vector<Named> obstacles;  // of pairs.obstacles()

@@ -2,7 +2,6 @@
 #include "robot/check/lane_check.h"
 
 #include "collide/kernels/plan_kernels.h"
-#include "robot/check/plan_source.h"
 #include "robot/model/link_paths.h"
 
 #include <algorithm>
@@ -14,19 +13,22 @@
 
 namespace spherule::internal {
 
-LaneCheck::LaneCheck(const BodyPairs& pairs, InstructionSet instructions)
-    : pairs_(pairs), positions_(pairs.robot()), kernels_(plan_kernels_for(instructions)) {
-  RobotPlanSource all = make_plan_source(pairs, pairs.pairs().size());
-  RobotPlanSource of_configurations = make_plan_source(pairs, pairs.static_tree_pairs_begin());
-  motion_plan_float_ = std::make_shared<const CompiledPlan<float>>(all.source);
-  motion_plan_double_ = std::make_unique<const CompiledPlan<double>>(all.source);
-  const bool is_all = pairs.static_tree_pairs_begin() == pairs.pairs().size();
-  config_plan_ = is_all ? motion_plan_float_
-                        : std::make_shared<const CompiledPlan<float>>(of_configurations.source);
-  wide_config_plan_ =
-      std::make_unique<const CompiledWidePlan>(of_configurations.source, *config_plan_);
-  pair_of_test_ = std::move(all.pair_of_test);
-  decide_fixed_pairs(all.fixed_pairs);
+LaneCheck::LaneCheck(const BodyPairs& pairs, const RobotPlanSource& source,
+                     InstructionSet instructions)
+    : pairs_(pairs),
+      positions_(pairs.robot()),
+      kernels_(plan_kernels_for(instructions)),
+      pair_of_test_(source.pair_of_test) {
+  const PlanSource& all = source.source;
+  motion_plan_float_ = std::make_shared<const CompiledPlan<float>>(all);
+  motion_plan_double_ = std::make_unique<const CompiledPlan<double>>(all);
+  PlanSource of_configurations = all;
+  of_configurations.tests.resize(source.first_static_tree);
+  const bool is_all = source.first_static_tree == all.tests.size();
+  config_plan_ =
+      is_all ? motion_plan_float_ : std::make_shared<const CompiledPlan<float>>(of_configurations);
+  wide_config_plan_ = std::make_unique<const CompiledWidePlan>(of_configurations, *config_plan_);
+  decide_fixed_pairs(source.fixed_pairs);
   find_never_ranges();
 }
 

@@ -4,6 +4,7 @@
 #include "collide/kernels/compiled_plan.h"
 #include "collide/search/instruction_set.h"
 #include "robot/check/body_pairs.h"
+#include "robot/check/plan_source.h"
 #include "robot/model/joint_positions.h"
 
 #include <algorithm>
@@ -69,9 +70,9 @@ namespace spherule::internal {
 
 class LaneCheck {
  public:
-  // `pairs` must outlive it. Throws Error for instructions that this machine has not got, and for
-  // what reaches too far.
-  LaneCheck(const BodyPairs& pairs, InstructionSet instructions);
+  // `pairs`, of which the source is made, must outlive it. Throws Error for instructions that this
+  // machine has not got, and for what reaches too far.
+  LaneCheck(const BodyPairs& pairs, const RobotPlanSource& source, InstructionSet instructions);
 
   // What a query writes to.
   class Scratch {
@@ -139,9 +140,9 @@ class LaneCheck {
   const BodyPairs& pairs_;
   JointPositions positions_;
   const PlanKernelSet& kernels_;
+  std::vector<std::size_t> pair_of_test_;  // of the source
   // Rigid pairs that are so near that the rounding of their poses decides.
   std::vector<std::size_t> rigid_pairs_;
-  std::vector<std::size_t> pair_of_test_;  // of the source
   std::vector<Range> never_ranges_;
   // Of the pairs before static_tree_pairs_begin(): configurations in lanes, and one alone.
   std::shared_ptr<const CompiledPlan<float>> config_plan_;

@@ -2,7 +2,9 @@
 #include "robot/check/plan_source.h"
 
 #include "collide/kernels/plan_trees.h"
+#include "collide/kernels/tree_kernel.h"
 #include "collide/meshes/solid_mesh.h"
+#include "robot/model/kinematics.h"
 #include "robot/model/link_paths.h"
 
 #include <algorithm>
@@ -16,6 +18,8 @@
 
 namespace spherule::internal {
 namespace {
+
+static_assert(kLargestJointPosition == kLargestPosition);
 
 struct ShapeOf {
   SearchTreeCache& cache;
@@ -113,7 +117,7 @@ class CellsSource {
 
 }  // namespace
 
-RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
+RobotPlanSource make_plan_source(const BodyPairs& pairs) {
   const MovingFrames frames(pairs.robot());
   SearchTreeCache& cache = pairs.robot().check_cache().search_trees;
   RobotPlanSource result;
@@ -138,7 +142,8 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     source.body_paths.push_back(steps_of(pairs.path_to_root(i), pairs.robot(), frames));
   }
   CellsSource cells(pairs.robot(), frames, source);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
+    if (i == pairs.static_tree_pairs_begin()) result.first_static_tree = source.tests.size();
     const CheckedPair& pair = pairs.pairs()[i];
     PlanSource::Path path = steps_of(pairs.path(i), pairs.robot(), frames);
     if (path.empty()) {
@@ -154,6 +159,9 @@ RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count) {
     // What never touches is hardly ever tested.
     if (!test.never_touches) test.free_cells = cells.of(pair);
     source.pair_paths.push_back(std::move(path));
+  }
+  if (pairs.static_tree_pairs_begin() == pairs.pairs().size()) {
+    result.first_static_tree = source.tests.size();
   }
   return result;
 }

@@ -18,10 +18,10 @@ struct RobotPlanSource {
   PlanSource source;
   std::vector<std::size_t> pair_of_test;  // of each test of the source
   std::vector<std::size_t> fixed_pairs;   // that no joint moves: they are not among the tests
+  std::size_t first_static_tree = 0;  // the first test of BodyPairs::static_tree_pairs_begin() on
 };
 
-// The first `count` of the pairs.
-RobotPlanSource make_plan_source(const BodyPairs& pairs, std::size_t count);
+RobotPlanSource make_plan_source(const BodyPairs& pairs);
 
 }  // namespace spherule::internal
 

@@ -5,7 +5,6 @@
 #include "base/rounding.h"
 #include "base/threads.h"
 #include "collide/collide.h"
-#include "collide/mechanism/mechanism_check.h"
 #include "robot/check/checker_parts.h"
 #include "robot/model/joint_positions.h"
 #include "robot/model/kinematics.h"
@@ -22,7 +21,7 @@
 namespace spherule {
 namespace {
 
-// Edges that a thread takes at a time, and configurations: whole blocks of MechanismCheck, and so
+// Edges that a thread takes at a time, and configurations: whole blocks of TreeCheck, and so
 // many that what a scratch remembers is worth something. To start and end a thread takes 40 to 75
 // us on a small cloud machine, a configuration against static trees of an easy cell 41 ns: for
 // kFewestShared the second thread saves what it costs. Others take longer: more than one piece of
@@ -30,7 +29,7 @@ namespace {
 constexpr std::size_t kEdgesAPiece = 16;
 constexpr std::size_t kPiece = 512;
 constexpr std::size_t kFewestShared = 4096;
-static_assert(kPiece % MechanismCheck::kBlock == 0);
+static_assert(kPiece % internal::TreeCheck::kBlock == 0);
 
 void require_size(const RobotModel& robot, std::span<const double> configuration) {
   if (configuration.size() != static_cast<std::size_t>(robot.variable_count())) {
@@ -73,7 +72,7 @@ const RobotModel& RobotChecker::robot() const {
 }
 
 RobotChecker::Scratch::Scratch(const RobotChecker& checker)
-    : memory_(std::make_unique<Memory>(checker.parts_, checker.parts_->lanes)) {
+    : memory_(std::make_unique<Memory>(checker.parts_, *checker.parts_->lanes)) {
   require_rounding_to_nearest();
   if (checker.parts_->static_trees) memory_->static_trees.emplace(*checker.parts_->static_trees);
 }
@@ -108,7 +107,7 @@ bool RobotChecker::is_free_of_itself(std::span<const double> configuration,
   if (parts_->pairs.static_tree_pairs_begin() == 0) return true;
   Scratch::Memory& memory = *scratch.memory_;
   if (parts_->pairs.in_filter_range(configuration)) {
-    return !parts_->lanes.touches(configuration, memory.lanes, memory.pairs);
+    return !parts_->lanes->touches(configuration, memory.lanes, memory.pairs);
   }
   require_finite(configuration);
   parts_->pairs.place(configuration, memory.pairs);
@@ -138,7 +137,7 @@ void RobotChecker::check_configs(std::span<const double> configurations, Scratch
   const auto settle = [&] {
     if (count == 0) return;
     const unsigned contacts =
-        parts_->lanes.contacts({waiting.data(), count}, memory.lanes, memory.pairs);
+        parts_->lanes->contacts({waiting.data(), count}, memory.lanes, memory.pairs);
     for (std::size_t i = 0; i < count; ++i) {
       free[index[i]] = (contacts >> i & 1U) == 0 ? std::uint8_t{1} : std::uint8_t{0};
     }
@@ -233,7 +232,7 @@ EdgeResult RobotChecker::check_within_limits(std::span<const double> from,
         break;
     }
   }
-  return parts_->lanes.check_edge(from, to, end, request, memory.lanes, memory.pairs);
+  return parts_->lanes->check_edge(from, to, end, request, memory.lanes, memory.pairs);
 }
 
 std::vector<EdgeResult> RobotChecker::check_edges(std::span<const double> from,

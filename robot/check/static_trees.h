@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Configurations against sphere trees that stand still: what a RobotChecker queries a
-// MechanismCheck, whose memory of the last configurations makes a path fast.
+// Configurations against sphere trees that stand still: a TreeCheck, whose cache of the last
+// configurations makes a path fast, with the exact tests.
 
-#include "collide/mechanism/mechanism_check.h"
+#include "collide/kernels/tree_check.h"
 #include "collide/meshes/mesh_contact.h"
 #include "collide/search/instruction_set.h"
 #include "robot/check/body_pairs.h"
+#include "robot/check/plan_source.h"
 #include "robot/model/joint_positions.h"
 
 #include <array>
@@ -16,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace spherule::internal {
@@ -28,27 +30,27 @@ class StaticTrees {
   // A contact that was confirmed: by a triangle of the piece's mesh and one of the obstacle's, or
   // where that has no mesh, the obstacle's sphere.
   struct Touch {
-    MechanismContact contact;
+    TreeContact contact;
     TrianglePair triangles;
   };
 
  public:
-  // `pairs` must outlive it. Throws Error as MechanismCheck does.
-  StaticTrees(const BodyPairs& pairs, InstructionSet instructions);
+  // `pairs`, of which the source is made, must outlive it. Throws Error as TreeCheck does.
+  StaticTrees(const BodyPairs& pairs, const RobotPlanSource& source, InstructionSet instructions);
 
   // What a query writes to. Those of several threads share no cache line.
   class alignas(64) Scratch {
    public:
     // For these.
     explicit Scratch(const StaticTrees& trees)
-        : check_(*trees.check_), positions_(trees.positions_.scratch_for(MechanismCheck::kBlock)) {}
+        : check_(trees.check_), positions_(trees.positions_.scratch_for(TreeCheck::kBlock)) {}
 
    private:
     friend class StaticTrees;
-    MechanismCheck::Scratch check_;
+    TreeCheck::Scratch check_;
     BodyPairs::Scratch placed_{};
     std::vector<double> middle_{};
-    std::vector<MechanismPair> unconfirmed_{};  // spheres touch, but the meshes do not
+    std::vector<std::size_t> unconfirmed_{};  // pairs whose spheres touch, but not the meshes
     std::optional<Touch> last_{};
     JointPositions::Scratch positions_;
   };
@@ -72,56 +74,43 @@ class StaticTrees {
                            bool needs_contact, Scratch& scratch) const;
 
  private:
-  // A piece that variables move, with its mesh, if that is known.
-  struct Body {
-    const CheckedPiece* piece;
-    int frame;  // of the check
-    Pose frame_from_link;
-  };
-  struct Obstacle {
-    std::shared_ptr<const SphereTree> tree;
-    Pose world_from_tree;
-    const CoveredMesh* mesh;
-  };
-
-  const Body& body_of(const MechanismPair& pair) const {
-    return bodies_[static_cast<std::size_t>(pair.body)];
+  std::size_t pair_of(const TreeContact& contact) const {
+    return pair_of_test_[static_cast<std::size_t>(contact.test)];
   }
-  const Obstacle& obstacle_of(const MechanismPair& pair) const {
-    return obstacles_[static_cast<std::size_t>(pair.obstacle)];
+  const CheckedPiece& piece_of(std::size_t pair) const {
+    return pairs_.pieces()[static_cast<std::size_t>(pairs_.pairs()[pair].piece)];
   }
-  std::size_t place_of(const MechanismPair& pair) const {
-    return static_cast<std::size_t>(pair.body) * obstacles_.size() +
-           static_cast<std::size_t>(pair.obstacle);
+  const PlacedShape& obstacle_of(std::size_t pair) const {
+    return pairs_.obstacles()[static_cast<std::size_t>(pairs_.pairs()[pair].other)];
   }
-  std::size_t pair_of(const MechanismPair& pair) const { return pair_of_[place_of(pair)]; }
-  static const Pose& pose_of(const Body& body, const Scratch& scratch) {
-    return scratch.placed_.world_from_link[static_cast<std::size_t>(body.piece->link)];
+  static const SphereTree& tree_of(const PlacedShape& obstacle) {
+    return *std::get<std::shared_ptr<const SphereTree>>(obstacle.shape);
+  }
+  static const Pose& pose_of(const CheckedPiece& piece, const Scratch& scratch) {
+    return scratch.placed_.world_from_link[static_cast<std::size_t>(piece.link)];
   }
   // Whether two meshes without padding stand for the two: contacts are then confirmed sphere by
   // sphere, on the triangles under them.
-  bool are_meshes(const MechanismPair& pair) const {
-    const CheckedPiece& piece = *body_of(pair).piece;
+  bool are_meshes(std::size_t pair) const {
+    const CheckedPiece& piece = piece_of(pair);
     return piece.mesh != nullptr && obstacle_of(pair).mesh != nullptr && piece.padding == 0.0;
   }
 
   enum class Finding { kApart, kSpheres, kTouch };
-  Finding find(const MechanismContact& contact, Scratch& scratch) const;
+  Finding find(const TreeContact& contact, Scratch& scratch) const;
   bool still_touches(const Touch& touch, Scratch& scratch) const;
   double depth_of(const Touch& touch, const Scratch& scratch) const;
   void remember(const Touch& touch, double depth, Scratch& scratch) const;
-  bool touches(std::span<const double> configuration, const MechanismContact& contact,
-               bool& is_placed, Scratch& scratch) const;
+  bool touches(std::span<const double> configuration, const TreeContact& contact, bool& is_placed,
+               Scratch& scratch) const;
   bool contains_component(const Scratch& scratch) const;
   bool touch_exactly(std::span<const double> configuration, Scratch& scratch) const;
 
   const BodyPairs& pairs_;
   JointPositions positions_;
-  std::vector<Body> bodies_;
-  std::vector<Obstacle> obstacles_;
-  std::vector<std::size_t> pair_of_;  // of BodyPairs, for each body and obstacle
-  bool has_static_contact_ = false;   // of a piece that stands with the root
-  std::unique_ptr<const MechanismCheck> check_;
+  std::vector<std::size_t> pair_of_test_;
+  bool has_static_contact_ = false;  // of a piece that stands with the root
+  TreeCheck check_;
 };
 
 }  // namespace spherule::internal

@@ -26,8 +26,8 @@
 namespace spherule {
 
 // From configurations, one number for each variable, to the positions of all joints that move,
-// mimics included, in the order of RobotModel::joints(): the variables of a MechanismCheck that has
-// a frame for each of these joints. Where no joint mimics another, both are the same numbers and
+// mimics included, in the order of RobotModel::joints(): the positions of the frames of
+// a PlanSource. Where no joint mimics another, both are the same numbers and
 // nothing is done. Immutable; threads may share it, each with a Scratch of its own.
 class JointPositions {
  public:

@@ -17,7 +17,6 @@
 // assert(spherule::kinematics_error_bound(robot, 1.0) < 1e-12);
 // @endcode
 
-#include "collide/mechanism/mechanism_check.h"
 #include "robot/model/robot_model.h"
 
 #include <span>
@@ -27,7 +26,7 @@ namespace spherule {
 
 // The largest magnitude of a joint's position, in radians or metres, for which bounds of errors are
 // proved.
-inline constexpr double kLargestJointPosition = MechanismCheck::kLargestVariable;
+inline constexpr double kLargestJointPosition = 100.0;
 
 // Poses world_from_link of all links, in the order of RobotModel::links(), for a configuration of
 // variable_count() positions (radians or metres; limits are not enforced) and a placed root.

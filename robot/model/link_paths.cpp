@@ -177,7 +177,7 @@ MovingFrames::MovingFrames(const RobotModel& robot)
     frame_from_link[link] = joint_from_frame.inverse();
     frames.push_back({.parent = frame_of_link[parent],
                       .parent_from_frame = frame_from_joint * joint_from_frame,
-                      .variable = moving,
+                      .position = moving,
                       .prismatic = joint.type == JointType::kPrismatic});
   }
 }

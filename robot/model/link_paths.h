@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/mechanism/mechanism_check.h"
+#include "collide/kernels/check_plan_source.h"
 #include "geometry/sphere.h"
 #include "robot/model/robot_model.h"
 
@@ -72,13 +72,13 @@ class PathReach {
 };
 
 // The moving frames of a robot: one for each joint that moves, its z axis turned into the joint's
-// axis, and where every link stands in the frame that carries it. A frame's variable is the
+// axis, and where every link stands in the frame that carries it. A frame's position is the
 // position of its joint (joint_positions()): a variable of the robot, where no joint mimics
 // another.
 struct MovingFrames {
   explicit MovingFrames(const RobotModel& robot);
 
-  std::vector<MechanismFrame> frames;
+  std::vector<PlanSource::Frame> frames;
   std::vector<int> frame_of_link;  // -1: it stands with the root
   std::vector<Pose> frame_from_link;
 };

@@ -2,7 +2,7 @@
 // A program of its own, because it replaces the global operator new. Queries allocate nothing on
 // trees that build_tree makes.
 #include "collide/collide.h"
-#include "collide/mechanism/mechanism_check.h"
+#include "collide/kernels/tree_check.h"
 #include "collide/meshes/mesh_contact.h"
 #include "collide/meshes/mesh_tree.h"
 #include "collide/pair_cache.h"
@@ -54,21 +54,23 @@ TEST(Allocation, QueriesTakeNoMemory) {
   });
 }
 
-TEST(Allocation, AMechanismsCheckTakesNoMemory) {
+TEST(Allocation, ACheckAgainstTreesTakesNoMemory) {
   Random random(2);
-  const auto tree = [&] {
-    return std::make_shared<const SphereTree>(build_tree(random_spheres(random, 500, 1.0, 0.02)));
+  const auto trees = [&] {
+    return std::make_shared<const internal::SearchTrees>(random_spheres(random, 500, 1.0, 0.02));
   };
-  const std::vector<MechanismFrame> frames = {{.parent_from_frame = random.pose(1.0)},
-                                              {.parent = 0, .variable = 1, .prismatic = true}};
-  const std::vector<MechanismBody> bodies = {{1, random.pose(1.0), tree()}, {0, Pose(), tree()}};
-  const std::vector<MechanismObstacle> obstacles = {{random.pose(2.0), tree()}};
-  const std::vector<MechanismPair> pairs = {{0, 0}, {1, 0}};
-  const MechanismCheck check(frames, bodies, obstacles, pairs, 1e-6);
-  MechanismCheck::Scratch scratch(check);
+  internal::PlanSource source;
+  source.frames = {{.parent_from_frame = random.pose(1.0)},
+                   {.parent = 0, .position = 1, .prismatic = true}};
+  source.bodies = {{1, trees(), random.pose(1.0)}, {0, trees(), Pose()}};
+  source.obstacles = {{trees(), random.pose(2.0)}};
+  source.tests = {{0, 0, true}, {1, 0, true}};
+  source.pose_error = 1e-6;
+  const internal::TreeCheck check(source, 0);
+  internal::TreeCheck::Scratch scratch(check);
   int hits = 0;
   int queried = 0;
-  const auto confirm = [&](const MechanismContact&) {
+  const auto confirm = [&](const internal::TreeContact&) {
     ++queried;
     return false;
   };
@@ -76,9 +78,9 @@ TEST(Allocation, AMechanismsCheckTakesNoMemory) {
   for (int i = 0; i < 1000; ++i) {
     const std::array<double, 2> variables = {random.between(-3.0, 3.0), random.between(-3.0, 3.0)};
     hits += check.collides(variables, scratch, confirm) ? 1 : 0;
-    std::array<const double*, MechanismCheck::kBlock> block;
+    std::array<const double*, internal::TreeCheck::kBlock> block;
     block.fill(variables.data());
-    check.collides(block, scratch, [](int, const MechanismContact&) { return false; });
+    check.collides(block, scratch, [](int, const internal::TreeContact&) { return false; });
   }
   EXPECT_EQ(allocations, before);
   EXPECT_GT(hits, 0);

@@ -213,7 +213,7 @@ void expect_bounds(const internal::PlanMotionBound<Real>& found, const PathBound
 template <class Real>
 int check_bounds(const internal::BodyPairs& pairs, InstructionSet set,
                  const std::vector<double>& from, const std::vector<double>& to) {
-  const internal::RobotPlanSource made = make_plan_source(pairs, pairs.pairs().size());
+  const internal::RobotPlanSource made = make_plan_source(pairs);
   const internal::CompiledPlan<Real> compiled(made.source);
   internal::PlanMemory<Real> memory(compiled);
   const internal::PlanScratch<Real>& scratch = memory.view();

@@ -190,13 +190,15 @@ const Kernels& avx2_kernels();
 const Kernels& avx512_kernels();
 #endif
 
-// MechanismCheck::kLargestVariable, whose header the kernels do not include: what is inline there
-// would be compiled for their instruction sets. mechanism_check.cpp has them equal.
-inline constexpr double kLargestKernelVariable = 100.0;
-// Of a sine and its cosine together, see kernel_vectors.h.
+// The largest magnitude of a position, in radians or the unit of the trees, for which checks
+// answer: all budgets of errors, those of motions too, are proved up to it. Beyond what joints of
+// robots do (16 turns, 100 metres), and so small that a position less its whole turns is known to
+// 2e-14 (vectors.h).
+inline constexpr double kLargestPosition = 100.0;
+// Of a sine and its cosine together, see vectors.h.
 inline constexpr double kSineError = 2e-11;
 // For each frame between root and body, of the largest distance from the root: how far a point may
-// be off where poses are computed in lanes, see kernel_lanes.h.
+// be off where poses are computed in lanes, see tree_poses.h.
 inline constexpr double kLaneErrorPerFrame = 38.0 * 0x1p-24;
 inline constexpr int kLongestLaneChain = 10000;
 

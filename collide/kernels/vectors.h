@@ -55,7 +55,7 @@ SPHERULE_INLINE unsigned mask_of(const Int8& set) {
 // instruction set that SPHERULE_KERNEL names.
 //
 // Error budget. Angles are reduced in double: of an angle x with |x| <= 100
-// (MechanismCheck::kLargestVariable), k = x 2 / pi rounded is at most 64, and x - k pi / 2 in two
+// (kLargestPosition), k = x 2 / pi rounded is at most 64, and x - k pi / 2 in two
 // steps errs by less than 64 (2^-53 + 2^-106 ...) < 2e-14; the remainder lies within pi / 4 +
 // 1e-13.
 //   Single, v = 2^-24: rounding the remainder costs 0.8 v. The sine's series up to r^9 errs by

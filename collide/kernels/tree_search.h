@@ -2,10 +2,10 @@
 #pragma once
 
 // One body against one obstacle: the dual-tree search over nodes of eight. Part of the kernels, see
-// kernel_block.h.
+// tree_block.h.
 
-#include "collide/mechanism/kernel_vectors.h"
-#include "collide/mechanism/mechanism_kernel.h"
+#include "collide/kernels/tree_kernel.h"
+#include "collide/kernels/vectors.h"
 
 #include <cstddef>
 
@@ -196,7 +196,7 @@ class Contact {
 
 // All pairs of leaves of a grown body and an obstacle that are not apart: a breadth-first search
 // whose only branches are the ends of its queues, since what overlaps is a coin toss that a
-// processor cannot predict. Part of the kernels, see kernel_block.h.
+// processor cannot predict. Part of the kernels, see tree_block.h.
 //
 // A slot names a sphere: 8 times the node that holds it and its lane. Of a body, the node behind
 // the last holds the sphere around all.

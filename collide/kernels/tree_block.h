@@ -18,15 +18,15 @@
 // are halved, until one is left and searched alone.
 //
 // By how much the body is grown. Let e be the error of the lanes' poses (`lane_error` of the body,
-// kernel_lanes.h, which is above 14 v W), T the exact poses, c and rho the body's sphere around
+// tree_poses.h, which is above 14 v W), T the exact poses, c and rho the body's sphere around
 // all. A point p of it is in lane i at most |T_i c - T_m c| + |R_i - R_m|_2 rho from where it is in
 // lane m. The first is at most the computed distance of the centres + 3 e. The difference of two
 // rotations has two equal singular values and a zero, so its norm is 1 / sqrt(2) of the one over
 // its entries, which is computed with 2 e / W at most: 2 e / sqrt(2) more. One more e for the pose
 // of lane m. Together: computed + 6 e; sums of squares, roots and products err by less than 2^-18.
 
-#include "collide/mechanism/kernel_lanes.h"
-#include "collide/mechanism/kernel_search.h"
+#include "collide/kernels/tree_poses.h"
+#include "collide/kernels/tree_search.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "collide/kernels/tree_check.h"
+
 #include "base/error.h"
 #include "base/rounding.h"
-#include "collide/mechanism/coherence_cache.h"
-#include "collide/mechanism/mechanism_check.h"
+#include "collide/kernels/coherence_cache.h"
 #include "collide/meshes/mesh_tree.h"
 #include "collide/pair_cache.h"
 #include "spheretree/build.h"
@@ -22,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <string>
@@ -30,23 +32,41 @@
 namespace spherule::test {
 namespace {
 
+using Eigen::Vector3d;
+using internal::PlanSource;
+using internal::TreeCheck;
+using internal::TreeContact;
+
+std::shared_ptr<const internal::SearchTrees> search_trees(const Vector3d& center, double radius) {
+  return std::make_shared<const internal::SearchTrees>(std::vector<Sphere>{{center, radius}});
+}
+
+// A sphere on the last of the frames against one that stands still.
+PlanSource one_test(std::vector<PlanSource::Frame> frames, const Sphere& body,
+                    const Sphere& obstacle, const Pose& frame_from_body = Pose()) {
+  PlanSource source;
+  source.frames = std::move(frames);
+  source.bodies = {{static_cast<int>(source.frames.size()) - 1,
+                    search_trees(body.center, body.radius), frame_from_body}};
+  source.obstacles = {{search_trees(obstacle.center, obstacle.radius), Pose()}};
+  source.tests = {{.body = 0, .other = 0, .is_obstacle = true}};
+  return source;
+}
+
 // An arm of length one about the z axis.
-const std::vector<MechanismFrame> kArm(1);
+const std::vector<PlanSource::Frame> kArm(1);
 
 // Whether single precision finds a sphere at the end of the arm apart from one that stands at a
 // distance of `gap` from where it is at the angle, surely in contact, or is uncertain.
 enum class Finding { kApart, kTouch, kUncertain };
 Finding find(double angle, double gap, InstructionSet set) {
   const double way = 1.0 + 0.2 + gap;
-  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
-  const std::vector<MechanismObstacle> obstacles = {
-      {Pose(), one_sphere_tree({way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1)}};
-  const std::vector<MechanismPair> pairs(1);
-  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0, {.instructions = set});
-  MechanismCheck::Scratch scratch(check);
+  const Sphere obstacle{{way * std::cos(angle), way * std::sin(angle), 0.0}, 0.1};
+  const TreeCheck check(one_test(kArm, {{1, 0, 0}, 0.1}, obstacle), 0, set);
+  TreeCheck::Scratch scratch(check);
   bool queried = false;
-  const auto confirm = [&](const MechanismContact& contact) {
-    EXPECT_EQ(contact.pair.body, 0);
+  const auto confirm = [&](const TreeContact& contact) {
+    EXPECT_EQ(contact.test, 0);
     EXPECT_EQ(contact.body_sphere, 0);
     queried = true;
     return false;
@@ -56,7 +76,7 @@ Finding find(double angle, double gap, InstructionSet set) {
 }
 
 // The margins are thin: micrometres for an arm of a metre, at every angle that is in range.
-TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
+TEST(TreeCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
   Random random(31);
   std::vector<double> angles = {0.0, 100.0, -100.0};
   for (int i = -63; i <= 63; ++i) angles.push_back(i * 0.78539816339744831);
@@ -74,22 +94,18 @@ TEST(MechanismCheck, AsksOnlyWhereSinglePrecisionCannotTell) {
 
 // A tree far from its own frame that the pose leads back: moving its centres costs more than what
 // is left of their offsets lets think.
-TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
+TEST(TreeCheck, OffsetsThatCancelAreMindedInTheMargins) {
   Random random(32);
-  const std::vector<MechanismPair> pairs(1);
   for (int i = 0; i < 3000; ++i) {
     const Eigen::Vector3d far = std::pow(10.0, random.between(8.0, 12.0)) * random.point(1.0);
     const Pose pose(Eigen::Quaterniond(random.quaternion()).normalized(), Eigen::Vector3d::Zero());
     const Pose back(pose.rotation(), -(pose * far));
     const Eigen::Vector3d direction = random.point(1.0).normalized();
     const double gap = random.between(-1e-3, 1e-3);
-    const std::vector<MechanismBody> bodies = {{0, back, one_sphere_tree(far, 0.1)}};
-    const std::vector<MechanismObstacle> obstacles = {
-        {Pose(), one_sphere_tree((0.2 + gap) * direction, 0.1)}};
-    const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
-    MechanismCheck::Scratch scratch(check);
+    const TreeCheck check(one_test(kArm, {far, 0.1}, {(0.2 + gap) * direction, 0.1}, back), 0);
+    TreeCheck::Scratch scratch(check);
     bool queried = false;
-    const auto confirm = [&](const MechanismContact&) {
+    const auto confirm = [&](const TreeContact&) {
       queried = true;
       return false;
     };
@@ -101,103 +117,49 @@ TEST(MechanismCheck, OffsetsThatCancelAreMindedInTheMargins) {
 
 // Poses are computed in single precision where configurations are checked side by side: over a long
 // chain their error is many times what it is for one configuration.
-TEST(MechanismCheck, ABlockNeverFindsApartWhatTouches) {
+TEST(TreeCheck, ABlockNeverFindsApartWhatTouches) {
   Random random(33);
   for (int i = 0; i < 50; ++i) {
-    std::vector<MechanismFrame> frames;
+    std::vector<PlanSource::Frame> frames;
     std::array<double, 1000> variables;
     Pose pose;
     for (int k = 0; k < 1000; ++k) {
-      frames.push_back({.parent = k - 1, .parent_from_frame = random.pose(0.0), .variable = k});
+      frames.push_back({.parent = k - 1, .parent_from_frame = random.pose(0.0), .position = k});
       variables[static_cast<std::size_t>(k)] = random.between(-3.2, 3.2);
       const Eigen::AngleAxisd turn(variables[static_cast<std::size_t>(k)],
                                    Eigen::Vector3d::UnitZ());
       pose = pose * frames.back().parent_from_frame *
              Pose(Eigen::Quaterniond(turn), Eigen::Vector3d::Zero());
     }
-    const std::vector<MechanismBody> bodies = {{999, Pose(), one_sphere_tree({0.3, 0, 0}, 0.1)}};
     const Eigen::Vector3d away = (0.2 - 1e-9) * random.point(1.0).normalized();
-    const std::vector<MechanismObstacle> obstacles = {
-        {Pose(), one_sphere_tree(pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1)}};
-    const std::vector<MechanismPair> pairs(1);
+    const PlanSource source =
+        one_test(frames, {{0.3, 0, 0}, 0.1}, {pose * Eigen::Vector3d(0.3, 0, 0) + away, 0.1});
     for (const InstructionSet set : instruction_sets()) {
-      const MechanismCheck check(frames, bodies, obstacles, pairs, 0.0, {.instructions = set});
-      MechanismCheck::Scratch scratch(check);
-      std::array<const double*, MechanismCheck::kBlock> block;
+      const TreeCheck check(source, 0, set);
+      TreeCheck::Scratch scratch(check);
+      std::array<const double*, TreeCheck::kBlock> block;
       block.fill(variables.data());
       std::uint32_t queried = 0;
-      const auto confirm = [&](int index, const MechanismContact&) {
+      const auto confirm = [&](int index, const TreeContact&) {
         queried |= 1U << index;
         return false;
       };
-      const MechanismCheck::BlockAnswer answer = check.collides(block, scratch, confirm);
-      EXPECT_EQ(answer.collides | queried, 0xffffU) << i;
-      EXPECT_EQ(answer.out_of_range, 0U);
+      const internal::KernelBlockAnswer answer = check.collides(block, scratch, confirm);
+      EXPECT_EQ(answer.hits | queried, 0xffffU) << i;
+      EXPECT_EQ(answer.refused, 0U);
     }
   }
 }
 
-TEST(MechanismCheck, RefusesBadInputByName) {
-  using Frames = std::vector<MechanismFrame>;
-  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
-  const std::vector<MechanismObstacle> obstacles = {{Pose(), one_sphere_tree({2, 0, 0}, 0.1)}};
-  const std::vector<MechanismPair> pairs(1);
-  const MechanismFrame far{.parent_from_frame = Pose::from_translation({9e14, 0, 0})};
-  MechanismFrame second = far, third = far;
-  second.parent = 0;
-  third.parent = 1;
-  struct Case {
-    std::string names;
-    Frames frames = kArm;
-    std::vector<MechanismBody> bodies;
-    std::vector<MechanismObstacle> obstacles;
-    std::vector<MechanismPair> pairs;
-    double pose_error = 0.0;
-  };
-  const auto tree = bodies[0].tree;
-  std::vector<Case> cases = {
-      {"frame 1", Frames{{}, {.parent = 1}}, bodies, obstacles, pairs},
-      {"frame 1", Frames{{}, {.variable = -1}}, bodies, obstacles, pairs},
-      {"frame 1", Frames{{}, {.variable = std::numeric_limits<int>::max()}}, bodies, obstacles,
-       pairs},
-      {"body 0", kArm, {{1, Pose(), tree}}, obstacles, pairs},
-      {"body 0", kArm, {{0, Pose(), nullptr}}, obstacles, pairs},
-      {"obstacle 0", kArm, bodies, {{Pose(), nullptr}}, pairs},
-      {"pair 0", kArm, bodies, obstacles, {{0, 1}}},
-      {"pair 0", kArm, bodies, obstacles, {{-1, 0}}},
-      {"too far", Frames{far, second, third}, {{2, Pose(), tree}}, obstacles, pairs}};
-  for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) {
-    cases.push_back({"pose error", kArm, bodies, obstacles, pairs, bad});
-  }
-  EXPECT_NO_THROW(MechanismCheck(kArm, bodies, obstacles, pairs, 0.0));
-  for (const Case& bad : cases) {
-    const std::string error = error_of(
-        [&] { MechanismCheck(bad.frames, bad.bodies, bad.obstacles, bad.pairs, bad.pose_error); });
-    EXPECT_NE(error.find(bad.names), std::string::npos) << error;
-  }
-}
-
-TEST(MechanismCheck, RefusesTheScratchOfAnother) {
-  const std::vector<MechanismBody> bodies = {{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}};
-  const std::vector<MechanismObstacle> obstacles = {{Pose(), one_sphere_tree({3, 0, 0}, 0.1)}};
-  const std::vector<MechanismPair> pairs(1);
-  const MechanismCheck other(kArm, bodies, obstacles, pairs, 0.0);
-  MechanismCheck::Scratch scratch(other);
-  const MechanismCheck check(kArm, bodies, obstacles, pairs, 0.0);
-  const std::array<double, 1> q = {0.0};
-  std::array<const double*, MechanismCheck::kBlock> block;
-  block.fill(q.data());
-  const auto none = [](const auto&...) { return false; };
-  EXPECT_FALSE(other.collides(q, scratch, none));
-  EXPECT_THROW((void)check.collides(q, scratch, none), Error);
-  EXPECT_THROW((void)check.collides(block, scratch, none), Error);
-  EXPECT_THROW((void)check.is_following(scratch), Error);
-  EXPECT_THROW(check.remember_contact(0, {{1, 0, 0}, 0.1}, 0.1, scratch), Error);
+TEST(TreeCheck, RefusesWhatReachesTooFar) {
+  const Pose far = Pose::from_translation({9e14, 0, 0});
+  const std::vector<PlanSource::Frame> frames = {
+      {-1, far}, {.parent = 0, .parent_from_frame = far}, {.parent = 1, .parent_from_frame = far}};
+  EXPECT_THROW(TreeCheck(one_test(frames, {{1, 0, 0}, 0.1}, {{2, 0, 0}, 0.1}), 0), Error);
 }
 
 // How far points of a sphere move, against where they are.
 
-using Eigen::Vector3d;
 using internal::KernelFrame;
 using internal::KernelPose;
 using internal::MovedSphere;
@@ -353,7 +315,6 @@ TEST(MovedSphere, CountsTheCurvatureOfTheWay) {
 // What a check of a mechanism remembers from one configuration to the next: it saves questions and
 // searches, and changes no answer.
 
-const std::vector<MechanismPair> kOnePair(1);
 constexpr double kNothing = -1.0;  // for a depth: nothing is to be remembered
 
 // An arm of length one about the z axis whose tip is within a large sphere. `confirm` always says
@@ -362,7 +323,7 @@ class DeepContact {
  public:
   bool is_asked(double angle, double depth) {
     int queried = 0;
-    const auto confirm = [&](const MechanismContact&) {
+    const auto confirm = [&](const TreeContact&) {
       ++queried;
       if (depth > 0.0) check_.remember_contact(0, {{1, 0, 0}, 0.1}, depth, scratch_);
       return true;
@@ -382,13 +343,14 @@ class DeepContact {
   static constexpr double kWayPerAngle = 1.1;
 
  private:
-  MechanismCheck check_{std::vector<MechanismFrame>(1),
-                        std::vector<MechanismBody>{{0, Pose(), one_sphere_tree({1, 0, 0}, 0.1)}},
-                        std::vector<MechanismObstacle>{{Pose(), one_sphere_tree({1, 0, 0}, 0.5)}},
-                        kOnePair,
-                        0.0,
-                        {.always_exact = true}};
-  MechanismCheck::Scratch scratch_{check_};
+  static PlanSource source() {
+    PlanSource source = one_test(kArm, {{1, 0, 0}, 0.1}, {{1, 0, 0}, 0.5});
+    source.bodies[0].is_confirmed = true;
+    return source;
+  }
+
+  TreeCheck check_{source(), 0};
+  TreeCheck::Scratch scratch_{check_};
 };
 
 TEST(CoherenceCache, AContactHoldsAsFarAsItsDepth) {
@@ -423,7 +385,7 @@ TEST(CoherenceCache, NothingIsKnownAfterAJump) {
 // An arm of turns and shifts with a sphere on every frame. The true bodies are smaller spheres
 // within the spheres, so that many contacts are refused.
 struct Arm {
-  std::vector<MechanismFrame> frames;
+  std::vector<PlanSource::Frame> frames;
   std::vector<Sphere> spheres;
   std::vector<Sphere> obstacles;
 
@@ -441,34 +403,34 @@ struct Arm {
     return pose * spheres[body].center;
   }
 
-  // By which the spheres of a contact go into each other, of that size.
-  double depth(const MechanismPair& pair, const std::vector<double>& at, double size) const {
-    const auto body = static_cast<std::size_t>(pair.body);
-    const Sphere& other = obstacles[static_cast<std::size_t>(pair.obstacle)];
+  // By which the spheres of a test go into each other, of that size. All spheres are tested against
+  // all obstacles.
+  double depth(std::int32_t test, const std::vector<double>& at, double size) const {
+    const auto body = static_cast<std::size_t>(test) % spheres.size();
+    const Sphere& other = obstacles[static_cast<std::size_t>(test) / spheres.size()];
     return size * (spheres[body].radius + other.radius) - (center(body, at) - other.center).norm();
   }
-
-  // Always exact: every pair is queried; otherwise pairs that are clearly apart are not.
-  MechanismCheck check(InstructionSet set, bool always_exact) const {
-    std::vector<MechanismBody> bodies;
-    std::vector<MechanismObstacle> things;
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-      bodies.push_back(
-          {static_cast<int>(i), Pose(), one_sphere_tree(spheres[i].center, spheres[i].radius)});
-    }
-    for (const Sphere& obstacle : obstacles) {
-      things.push_back({Pose(), one_sphere_tree(obstacle.center, obstacle.radius)});
-    }
-    return MechanismCheck(frames, bodies, things, pairs(), 0.0,
-                          {.instructions = set, .always_exact = always_exact});
+  std::int32_t test_count() const {
+    return static_cast<std::int32_t>(spheres.size() * obstacles.size());
   }
 
-  std::vector<MechanismPair> pairs() const {
-    std::vector<MechanismPair> all;
-    for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
-      all.push_back({static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size())});
+  // Confirmed: every pair is queried; otherwise pairs that are clearly apart are not.
+  PlanSource source(bool is_confirmed) const {
+    PlanSource source;
+    source.frames = frames;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      source.bodies.push_back({static_cast<int>(i),
+                               search_trees(spheres[i].center, spheres[i].radius), Pose(),
+                               is_confirmed});
     }
-    return all;
+    for (const Sphere& obstacle : obstacles) {
+      source.obstacles.push_back({search_trees(obstacle.center, obstacle.radius), Pose()});
+    }
+    for (std::size_t i = 0; i < spheres.size() * obstacles.size(); ++i) {
+      source.tests.push_back(
+          {static_cast<int>(i % spheres.size()), static_cast<int>(i / spheres.size()), true});
+    }
+    return source;
   }
 };
 
@@ -518,29 +480,30 @@ TEST(CoherenceCache, SavesQuestionsAndChangesNoAnswer) {
   for (int i = 0; i < 12; ++i) {
     const Way way(random, 4);
     const Arm arm = random_arm(random, way, kSteps, 0.7, 1.1);
-    std::vector<MechanismCheck> checks = {arm.check(InstructionSet::kPortable, false)};
-    for (const InstructionSet set : instruction_sets()) checks.push_back(arm.check(set, true));
+    std::deque<TreeCheck> checks;
+    checks.emplace_back(arm.source(false), 0, InstructionSet::kPortable);
+    for (const InstructionSet set : instruction_sets())
+      checks.emplace_back(arm.source(true), 0, set);
     for (std::size_t k = 0; k < checks.size(); ++k) {
-      const MechanismCheck& check = checks[k];
-      MechanismCheck::Scratch scratch(check);
+      const TreeCheck& check = checks[k];
+      TreeCheck::Scratch scratch(check);
       for (int step = 0; step < kSteps; ++step) {
         const std::vector<double> at = way.at(step);
         int questions = 0;
-        const auto query = [&](MechanismCheck::Scratch& remembering) {
+        const auto query = [&](TreeCheck::Scratch& remembering) {
           questions = 0;
-          return check.collides(at, remembering, [&](const MechanismContact& contact) {
+          return check.collides(at, remembering, [&](const TreeContact& contact) {
             ++questions;
-            const auto body = static_cast<std::size_t>(contact.pair.body);
-            const double depth = arm.depth(contact.pair, at, Arm::kTrueSize);
+            const double depth = arm.depth(contact.test, at, Arm::kTrueSize);
             if (depth < 0.0) return false;
-            const Sphere& sphere = arm.spheres[body];
-            check.remember_contact(contact.pair.body,
-                                   {sphere.center, Arm::kTrueSize * sphere.radius}, depth - 1e-12,
-                                   remembering);
+            const Sphere& sphere =
+                arm.spheres[static_cast<std::size_t>(contact.test) % arm.spheres.size()];
+            check.remember_contact(contact.test, {sphere.center, Arm::kTrueSize * sphere.radius},
+                                   depth - 1e-12, remembering);
             return true;
           });
         };
-        MechanismCheck::Scratch anew(check);
+        TreeCheck::Scratch anew(check);
         const bool truth = query(anew);
         const int all_questions = questions;
         ASSERT_EQ(query(scratch), truth) << i << " at step " << step;
@@ -568,18 +531,21 @@ TEST(CoherenceCache, OverlooksNoTouch) {
   for (int i = 0; i < effort(20, 5); ++i) {
     const Way way(random, 4);
     const Arm arm = random_arm(random, way, kSteps, 1.0 - 1e-3, 1.0 + 1e-2);
-    const std::vector<MechanismPair> pairs = arm.pairs();
-    std::vector<MechanismCheck> checks;
-    for (const InstructionSet set : instruction_sets()) checks.push_back(arm.check(set, false));
-    std::vector<MechanismCheck::Scratch> scratches(checks.begin(), checks.end());
+    std::deque<TreeCheck> checks;
+    for (const InstructionSet set : instruction_sets())
+      checks.emplace_back(arm.source(false), 0, set);
+    std::deque<TreeCheck::Scratch> scratches;
+    for (const TreeCheck& check : checks) scratches.emplace_back(check);
     const int stride = i % 2 == 0 ? 1 : 16;  // in steps that long the cache pauses
     for (int step = 0; step < kSteps; ++step) {
       const std::vector<double> at = way.at(step * stride);
       double depth = -1.0;
-      for (const MechanismPair& pair : pairs) depth = std::max(depth, arm.depth(pair, at, 1.0));
+      for (std::int32_t test = 0; test < arm.test_count(); ++test) {
+        depth = std::max(depth, arm.depth(test, at, 1.0));
+      }
       for (std::size_t k = 0; k < checks.size(); ++k) {
-        const bool hit = checks[k].collides(at, scratches[k], [&](const MechanismContact& contact) {
-          return arm.depth(contact.pair, at, 1.0) >= 0.0;
+        const bool hit = checks[k].collides(at, scratches[k], [&](const TreeContact& contact) {
+          return arm.depth(contact.test, at, 1.0) >= 0.0;
         });
         ASSERT_EQ(hit, depth >= 0.0) << i << " at step " << step << ", " << depth;
       }
@@ -594,7 +560,6 @@ TEST(CoherenceCache, OverlooksNoTouch) {
 TEST(RoundingMode, OthersAreRefused) {
   const std::vector<Sphere> spheres{{{0, 0, 0}, 1.0}, {{1, 0, 0}, 1.0}};
   const SphereTree tree = build_tree(spheres);
-  const MechanismCheck mechanism({}, {}, {}, {}, 0.0);
   const TriangleMesh cube = cube_mesh();
   expect_rounding_to_nearest_is_needed([] { require_rounding_to_nearest(); }, "test");
   expect_rounding_to_nearest_is_needed([&] { build_tree(spheres); }, "build_tree");
@@ -603,7 +568,6 @@ TEST(RoundingMode, OthersAreRefused) {
   expect_rounding_to_nearest_is_needed([&] { check(tree); }, "check");
   expect_rounding_to_nearest_is_needed([&] { SphereTree{tree.data()}; }, "SphereTree");
   expect_rounding_to_nearest_is_needed([&] { PairCache(tree, tree); }, "PairCache");
-  expect_rounding_to_nearest_is_needed([&] { MechanismCheck::Scratch{mechanism}; }, "Scratch");
 }
 
 }  // namespace

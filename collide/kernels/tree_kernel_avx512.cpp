@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For x86 processors with AVX-512 (F, DQ, BW, VL); compiled for these.
-#include "collide/mechanism/mechanism_kernel.h"
+#include "collide/kernels/tree_kernel.h"
 
 #include <cstddef>
 
 #define SPHERULE_KERNEL avx512
-#include "collide/mechanism/kernel_block.h"
+#include "collide/kernels/tree_block.h"
 
 namespace spherule::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collide/mechanism/coherence_cache.h"
+#include "collide/kernels/coherence_cache.h"
 
 #include "collide/search/packed_tree.h"
 
@@ -125,7 +125,7 @@ constexpr double kStepUp = 1.0 + 1e-9;
 constexpr double kStepRest = 0x1p-38;
 constexpr double kLongestWay = 1024.0;
 
-// As a body that is grown by g' is apart: MechanismCheck::within() says why.
+// Bodies are grown by what is rounded to single precision: by at least this part of it.
 constexpr double kInflationDown = 1.0 - 0x1p-18;
 
 // Of any point of a body from a joint that carries it, at most, summed up for each variable.
@@ -138,7 +138,7 @@ std::vector<double> reaches(const KernelProblem& problem) {
       const KernelFrame& frame = problem.frames[f];
       double& reach = of_frame[static_cast<std::size_t>(f)];
       reach = std::max(reach, frame.prismatic ? 1.0 : distance);
-      distance += length(frame.origin) + (frame.prismatic ? kLargestKernelVariable : 0.0);
+      distance += length(frame.origin) + (frame.prismatic ? kLargestPosition : 0.0);
     }
   }
   std::vector<double> result(static_cast<std::size_t>(problem.variable_count), 0.0);

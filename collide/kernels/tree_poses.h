@@ -2,10 +2,10 @@
 #pragma once
 
 // Kinematics of one configuration in double precision. Part of the kernels, see
-// kernel_block.h.
+// tree_block.h.
 
-#include "collide/mechanism/kernel_search.h"
-#include "collide/mechanism/kernel_vectors.h"
+#include "collide/kernels/tree_search.h"
+#include "collide/kernels/vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
@@ -145,9 +145,9 @@ SPHERULE_INLINE void place_roots(const KernelProblem& problem, const KernelScrat
 }  // namespace spherule::internal::SPHERULE_KERNEL
 
 // Sixteen configurations side by side, in as many vectors of the machine as that takes: numbers,
-// and the kinematics in single precision. Part of the kernels, see kernel_block.h.
+// and the kinematics in single precision. Part of the kernels, see tree_block.h.
 //
-// Error budget, v = 2^-24. A pair of sine and cosine errs by less than 6 v (kernel_vectors.h).
+// Error budget, v = 2^-24. A pair of sine and cosine errs by less than 6 v (vectors.h).
 // Of a frame in its parent's, over all nine entries of a rotation (Frobenius):
 //   the frame's rotation rounded           2 v
 //   product with the parent's              9 v   three terms an entry, 3 v by Cauchy, nine entries
@@ -270,7 +270,7 @@ SPHERULE_INLINE float largest(const Floats& a, unsigned live) {
   return both > 0.0F ? both : 0.0F;
 }
 
-// Rounds to single precision; returns the lanes with a number of at most kLargestKernelVariable.
+// Rounds to single precision; returns the lanes with a number of at most kLargestPosition.
 SPHERULE_INLINE unsigned in_range(const double* exact, float* rounded) {
 #pragma GCC unroll 8
   for (int i = 0; i < 2 * kParts; ++i) {
@@ -281,15 +281,14 @@ SPHERULE_INLINE unsigned in_range(const double* exact, float* rounded) {
   unsigned lanes_in_range = 0;
   for (int i = 0; i < 2; ++i) {
     const __m512d size = _mm512_abs_pd(_mm512_load_pd(exact + 8 * i));
-    const __mmask8 set =
-        _mm512_cmp_pd_mask(size, _mm512_set1_pd(kLargestKernelVariable), _CMP_LE_OQ);
+    const __mmask8 set = _mm512_cmp_pd_mask(size, _mm512_set1_pd(kLargestPosition), _CMP_LE_OQ);
     lanes_in_range |= static_cast<unsigned>(set) << (8 * i);
   }
   return lanes_in_range;
 #else
   unsigned lanes_in_range = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const bool is_in_range = __builtin_fabs(exact[lane]) <= kLargestKernelVariable;
+    const bool is_in_range = __builtin_fabs(exact[lane]) <= kLargestPosition;
     lanes_in_range |= (is_in_range ? 1U : 0U) << lane;
   }
   return lanes_in_range;

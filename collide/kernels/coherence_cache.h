@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "collide/mechanism/mechanism_kernel.h"
+#include "collide/kernels/tree_kernel.h"
 #include "geometry/sphere.h"
 
 #include <cstddef>
@@ -34,7 +34,7 @@ namespace spherule::internal {
 // convex in D, is at most the larger of the ends, and so is every |D_k|.
 //
 // Rounding. As placed, origins and centres err by 2.1e-11 n W and axes by 2.1e-11 n, n frames from
-// the root, W being how far the mechanism reaches (mechanism_check.cpp): v and w radius err by less
+// the root, W being how far the mechanism reaches (tree_check.cpp): v and w radius err by less
 // than 1e-10 (n + 1) (W + radius) sum |D_k| together. The caller gives twice that per sum |D_k|.
 // All other roundings are far below kRelative.
 class MovedSphere {
@@ -94,7 +94,7 @@ class MovedSphere {
 // as long when it is tried again in vain.
 class CoherenceCache {
  public:
-  // `reach` and `tilt` of the bodies as in mechanism_parts.h.
+  // `reach` and `tilt` of the bodies as TreeCheck has them.
   CoherenceCache(const KernelProblem& problem, std::span<const double> reach,
                  std::span<const double> tilt);
 
