@@ -4,7 +4,7 @@
 // Sphere trees in files.
 //
 // @code{.cpp}
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <spherule/spheretree/tree_file.h>
 // #include <cassert>
 // #include <filesystem>

@@ -15,7 +15,7 @@
 #include "robot/check/robot_checker.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/pairs/link_pairs.h"
 
 #include <CLI/CLI.hpp>

@@ -13,10 +13,11 @@
 #include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
+#include "robot/check/robot_collision.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/robot_spheres.h"
-#include "robot/files/srdf.h"
-#include "robot/model/link_spheres.h"
+#include "robot/files/robot_description.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "simplifier/simplify.h"
 

@@ -3,8 +3,8 @@
 
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "robot/cover/link_mesh.h"
-#include "robot/model/link_spheres.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
 

@@ -9,7 +9,7 @@
 #include "cli/robots/pair_report.h"
 #include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
-#include "robot/model/link_spheres.h"
+#include "robot/model/robot_model.h"
 #include "simplifier/option_record.h"
 
 #include <CLI/CLI.hpp>

@@ -6,7 +6,7 @@
 #include "collide/mechanism/mechanism_parts.h"
 #include "collide/search/packed_tree.h"
 #include "collide/search/relative_pose.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cassert>

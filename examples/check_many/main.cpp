@@ -11,7 +11,7 @@
 #include <random>
 #include <spherule/robot/check/robot_scene.h>
 #include <spherule/robot/cover/robot_spheres.h>
-#include <spherule/robot/files/urdf.h>
+#include <spherule/robot/files/robot_description.h>
 #include <string>
 #include <vector>
 

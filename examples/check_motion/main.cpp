@@ -5,8 +5,8 @@
 #include <memory>
 #include <spherule/robot/check/robot_scene.h>
 #include <spherule/robot/cover/robot_spheres.h>
-#include <spherule/robot/files/urdf.h>
-#include <spherule/spheretree/build.h>
+#include <spherule/robot/files/robot_description.h>
+#include <spherule/spheretree/sphere_tree.h>
 #include <vector>
 
 using namespace spherule;

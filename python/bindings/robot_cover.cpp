@@ -4,7 +4,6 @@
 #include "python/bindings/support.h"
 #include "robot/check/robot_collision.h"
 #include "robot/cover/audit_robot.h"
-#include "robot/cover/link_mesh.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"

@@ -5,8 +5,8 @@
 #include "base/threads.h"
 #include "robot/cover/alarm_sample.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/cover/link_mesh.h"
-#include "spheretree/build.h"
+#include "robot/cover/robot_spheres.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <array>

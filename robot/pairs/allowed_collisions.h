@@ -15,7 +15,7 @@
 // assert(!allowed.allows("base", "arm"));
 // @endcode
 
-#include "robot/files/srdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/link_pairs.h"
 
@@ -122,12 +122,9 @@ class AllowedCollisions {
   std::vector<AllowedReason> reasons_;
 };
 
-}  // namespace spherule
-
 // Pairs of links that are proved never to touch, for lists of ignored pairs.
 //
 // @code{.cpp}
-//
 // spherule::RobotModel robot("base");
 // robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
 // const auto proofs = spherule::prove_link_pairs(robot, {});  // without bodies: of no pair
@@ -135,8 +132,6 @@ class AllowedCollisions {
 // spherule::add_missing_pairs(spherule::pairs_proved_never(robot, proofs), robot, pairs);
 // assert(pairs.size() == 1);
 // @endcode
-
-namespace spherule {
 
 // The reason of pairs that are proved never to touch, in lists of ignored pairs.
 inline constexpr std::string_view kProvedNeverReason = "Never (proved within the limits)";

@@ -2,21 +2,8 @@
 #pragma once
 
 // Is what an SRDF states about pairs of links true?
-//
-// @code{.cpp}
-// #include <spherule/robot/pairs/srdf_judgement.h>
-// #include <cassert>
-//
-// spherule::RobotModel robot("base");
-// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
-// spherule::SemanticDescription semantics;  // as read_srdf() reads it
-// semantics.disabled_pairs = {{.link_a = "base", .link_b = "hand", .reason = "Never"}};
-// const auto judgement =
-//     spherule::judge_srdf(robot, semantics, spherule::prove_link_pairs(robot, {}));
-// assert(judgement.pairs[0].verdict == spherule::DisabledVerdict::kOtherRobot);  // no hand
-// @endcode
 
-#include "robot/files/srdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/pairs/link_pairs.h"
 
 #include <cstdint>

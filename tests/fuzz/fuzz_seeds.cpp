@@ -6,7 +6,7 @@
 #include "robot/formats/sphere_formats.h"
 #include "robot/pairs/link_pairs.h"
 #include "simplifier/types/zones.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_bytes.h"
 #include "tests/fuzz/fuzz_targets.h"
 #include "tests/robot/box_robots.h"
