@@ -3,10 +3,7 @@
 // (docs/cpp_robot.md).
 #include <iostream>
 #include <memory>
-#include <spherule/robot/check/robot_scene.h>
-#include <spherule/robot/cover/robot_spheres.h>
-#include <spherule/robot/files/robot_description.h>
-#include <spherule/spheretree/sphere_tree.h>
+#include <spherule/robot.h>
 #include <vector>
 
 using namespace spherule;

@@ -13,8 +13,7 @@
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 #include <spherule/adapters/ompl/validators.h>
-#include <spherule/robot/check/robot_scene.h>
-#include <spherule/spheretree/sphere_tree.h>
+#include <spherule/robot.h>
 #include <vector>
 
 namespace ob = ompl::base;
