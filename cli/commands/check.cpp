@@ -96,7 +96,7 @@ PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCov
   bar.clear();
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
-  for (const DisabledPair& pair : robot.ignored) allowed.allow(pair.link_a, pair.link_b);
+  allowed.allow(robot.ignored);
   prepared.scene.set_allowed_collisions(std::move(allowed));
   return prepared;
 }

@@ -204,7 +204,7 @@ PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
                   [](const DisabledPair& pair) { return pair.reason == kProvedNeverReason; });
   }
   AllowedCollisions allowed(kinds.model);
-  for (const DisabledPair& pair : given) allowed.allow(pair.link_a, pair.link_b);
+  allowed.allow(given);
   kinds.pairs = pair_statuses(kinds.model, allowed, kinds.proofs);
   return kinds;
 }

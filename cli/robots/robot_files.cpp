@@ -7,6 +7,7 @@
 #include "robot/check/scene_setup.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
+#include "robot/pairs/srdf_judgement.h"
 #include "spheretree/sphere_tree.h"
 #include "spheretree/tree_file.h"
 

@@ -35,8 +35,7 @@ struct GoalCover {
 // The search is done by first covers, those of an effort of 0; what is chosen is covered with the
 // options' effort. Otherwise as cover_robot(), whose promises hold. Throws Error as both.
 GoalCover cover_robot_to_goal(const RobotDescription& robot, std::span<const LinkBody> bodies,
-                              std::span<const std::pair<std::string, std::string>> disabled,
-                              const LinkPairs* proofs, const RobotCoverOptions& options,
-                              const LinkErrorOptions& goal = {});
+                              std::span<const DisabledPair> disabled, const LinkPairs* proofs,
+                              const RobotCoverOptions& options, const LinkErrorOptions& goal = {});
 
 }  // namespace spherule

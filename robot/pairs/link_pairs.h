@@ -303,12 +303,4 @@ void save_link_pairs(const LinkPairs& pairs, const std::filesystem::path& path);
 LinkPairs load_link_pairs(const std::filesystem::path& path, const RobotModel& robot,
                           std::span<const LinkBody> bodies);
 
-namespace internal {
-
-// The content apart from the file system, for tests; `name` becomes the subject of an Error.
-std::string encode_link_pairs(const LinkPairs& pairs);
-LinkPairs decode_link_pairs(std::string_view bytes, const std::string& name);
-
-}  // namespace internal
-
 }  // namespace spherule

@@ -5,6 +5,7 @@
 #include "io/sphere_text.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/pairs/link_pairs.h"
+#include "robot/pairs/proof_scope.h"
 #include "simplifier/types/zones.h"
 #include "spheretree/sphere_tree.h"
 #include "spheretree/tree_bytes.h"

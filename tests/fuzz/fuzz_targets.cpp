@@ -12,6 +12,7 @@
 #include "robot/files/trajectory_file.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/pairs/link_pairs.h"
+#include "robot/pairs/proof_scope.h"
 #include "simplifier/types/zones.h"
 #include "spheretree/tree_file.h"
 #include "tests/robot/formats/sphere_sets.h"

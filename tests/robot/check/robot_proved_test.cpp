@@ -323,13 +323,5 @@ TEST_F(TwoBarScene, ContactsAreToldBeforeWhatIsProvedFree) {
   }
 }
 
-TEST_F(TwoBarScene, WhatNeverTouchesMayBeAllowed) {
-  AllowedCollisions allowed(robot_.model);
-  allowed.allow(*pairs_);
-  EXPECT_TRUE(allowed.allows("first", "second"));
-  EXPECT_EQ(allowed.reason(1, 2), AllowedReason::kProvedNever);
-  EXPECT_THROW(AllowedCollisions(RobotModel("alone")).allow(*pairs_), Error);
-}
-
 }  // namespace
 }  // namespace spherule::test::robot_proved_test
