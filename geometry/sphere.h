@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Spheres, and predicates that err on one side only.
+// Spheres, predicates that err on one side only, and enclosing spheres.
 //
 // @code{.cpp}
 // #include <spherule/geometry/sphere.h>

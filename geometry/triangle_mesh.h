@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Triangle meshes.
+// Triangle meshes, and what is unusual about one.
 //
 // @code{.cpp}
 // #include <spherule/geometry/triangle_mesh.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Meshes from files, and STL files from meshes.
+// Meshes from files, STL files from meshes, and units of length.
 //
 // @code{.cpp}
 // #include <spherule/io/mesh_io.h>

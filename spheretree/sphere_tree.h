@@ -202,7 +202,7 @@ struct TreeReport {
 // Checks all five invariants of SphereTree with outward rounding: `valid` is true only if they hold
 // in exact arithmetic. A sphere that encloses another by less than a few units in the last place
 // may be refused; build_tree never makes one. Throws Error only in a thread that does not round to
-// nearest (rounding_mode.h).
+// nearest (base/rounding.h).
 TreeReport check(const SphereTreeData& data);
 TreeReport check(const SphereTree& tree);
 

@@ -1,17 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Transforms and models of FCL as poses and meshes, and back.
+// The queries of FCL under FCL's names, answered by spherule. A program that uses fcl::collide()
+// goes on with its objects, transforms, requests and results; it gives the objects the geometry
+// that sphere_model() makes of each model, and writes spherule::fcl_api for fcl where it is called.
+//
+// What is requested and not supported is an Error or does not compile. It is never "free".
+//
+// Where the answers mean more, or other, than FCL's:
+// - A result is of the last call only: collide() clears it first. FCL adds to what is there.
+// - A model is its triangles and its inside, grown by up to E where the spheres decide. FCL's
+//   models are surfaces.
+// - None of the functions reads what requests say of FCL's solvers (gjk_*, cached_gjk_guess).
+// S is float or double. A transform is checked when it is queried, see from_fcl(). Errors name the
+// argument.
 //
 // @code{.cpp}
 // #include <spherule/adapters/fcl/collide.h>
 // #include <cassert>
 //
-// fcl::Transform3d shifted = fcl::Transform3d::Identity();
-// shifted.translation() = fcl::Vector3d(1, 2, 3);
-// const spherule::Pose pose = spherule::fcl_api::from_fcl(shifted);
-// assert(pose.translation() == Eigen::Vector3d(1, 2, 3));
-// assert(spherule::fcl_api::to_fcl(pose).isApprox(shifted));
+// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
+// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
+// namespace api = spherule::fcl_api;
+// const auto model = std::make_shared<api::SphereModel<double>>(sphere);
+// const api::CollisionObjectd a(model);
+// const api::CollisionObjectd b(model, Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.15, 0, 0));
+// api::CollisionResultd result;
+// assert(api::collide(&a, &b, api::CollisionRequestd(), result) == 1);
 // @endcode
 
 #include "base/error.h"
@@ -42,6 +57,16 @@
 #include <utility>
 
 namespace spherule::fcl_api {
+
+// Transforms and models of FCL as poses and meshes, and back.
+//
+// @code{.cpp}
+// fcl::Transform3d shifted = fcl::Transform3d::Identity();
+// shifted.translation() = fcl::Vector3d(1, 2, 3);
+// const spherule::Pose pose = spherule::fcl_api::from_fcl(shifted);
+// assert(pose.translation() == Eigen::Vector3d(1, 2, 3));
+// assert(spherule::fcl_api::to_fcl(pose).isApprox(shifted));
+// @endcode
 
 // The pose of a transform of either precision: the rotation nearest to its matrix, up to rounding,
 // and its translation. What is queried of the pose is answered for that rotation, from which an
@@ -196,31 +221,6 @@ std::shared_ptr<SphereModel<typename BV::S>> sphere_model(const fcl::BVHModel<BV
                                                           const ModelOptions& options = {}) {
   return std::make_shared<SphereModel<typename BV::S>>(cover_part(from_fcl(model), options));
 }
-
-// The queries of FCL under FCL's names, answered by spherule. A program that uses fcl::collide()
-// goes on with its objects, transforms, requests and results; it gives the objects the geometry
-// that sphere_model() makes of each model, and writes spherule::fcl_api for fcl where it is called.
-//
-// What is requested and not supported is an Error or does not compile. It is never "free".
-//
-// Where the answers mean more, or other, than FCL's:
-// - A result is of the last call only: collide() clears it first. FCL adds to what is there.
-// - A model is its triangles and its inside, grown by up to E where the spheres decide. FCL's
-//   models are surfaces.
-// - None of the functions reads what requests say of FCL's solvers (gjk_*, cached_gjk_guess).
-// S is float or double. A transform is checked when it is queried, see from_fcl(). Errors name the
-// argument.
-//
-// @code{.cpp}
-// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
-// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
-// namespace api = spherule::fcl_api;
-// const auto model = std::make_shared<api::SphereModel<double>>(sphere);
-// const api::CollisionObjectd a(model);
-// const api::CollisionObjectd b(model, Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.15, 0, 0));
-// api::CollisionResultd result;
-// assert(api::collide(&a, &b, api::CollisionRequestd(), result) == 1);
-// @endcode
 
 // So that a program needs one namespace only.
 using fcl::CollisionGeometry;

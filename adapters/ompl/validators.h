@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// States of OMPL's spaces as configurations of a robot.
+// A RobotChecker for OMPL's planners: StateValidityChecker, and MotionValidator, whose motions are
+// proved free at every point. Beneath them RobotStates, the states of OMPL's spaces as
+// configurations.
 //
 // @code{.cpp}
 // #include <spherule/adapters/ompl/validators.h>

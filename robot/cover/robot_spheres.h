@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The shapes of a link as one mesh, and what links are made of for proofs about pairs of them.
+// Spheres that are proved to cover a robot's links: cover_robot(). Before it, the shapes of a link
+// as one mesh, and what links are made of for proofs about pairs of them.
 //
 // @code{.cpp}
 // #include <spherule/robot/cover/robot_spheres.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Robots from URDF files.
+// Robots from URDF files, and what an SRDF says of them.
 //
 // @code{.cpp}
 // #include <spherule/robot/files/robot_description.h>

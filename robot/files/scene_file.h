@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What is around a robot, from a file (docs/scene-file.md).
+// What is around a robot, from a file (docs/scene-file.md), and points from files.
 //
 // @code{.cpp}
 // #include <spherule/robot/files/scene_file.h>

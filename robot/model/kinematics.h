@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Where a robot's links are in a configuration.
+// Where a robot's links are in a configuration, and motions on which continuous joints turn the
+// shorter way.
 //
 // @code{.cpp}
 // #include <spherule/robot/model/kinematics.h>

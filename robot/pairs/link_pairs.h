@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Sets of configurations that are proved free, as LinkPair has them.
+// Which links of a robot can touch each other: prove_link_pairs(). Before it, sets of
+// configurations that are proved free, as LinkPair has them.
 //
 // @code{.cpp}
 // #include <spherule/robot/pairs/link_pairs.h>
@@ -291,7 +292,7 @@ std::uint64_t bodies_fingerprint(std::span<const LinkBody> bodies);
 // assert(pairs.find(0, 1)->verdict == spherule::PairVerdict::kTouching);
 // @endcode
 
-// Writes proofs to a file, at once or not at all (base/files.h): little-endian bytes,
+// Writes proofs to a file, at once or not at all: little-endian bytes,
 // one for each node of a tree of boxes, and a checksum. Throws Error naming the file.
 void save_link_pairs(const LinkPairs& pairs, const std::filesystem::path& path);
 

@@ -22,7 +22,6 @@
 #include "base/progress.h"
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "io/sphere_file.h"
 #include "simplifier/types/zones.h"
 #include "spheretree/sphere_tree.h"
 
@@ -79,7 +78,7 @@ struct ExternalOptions {
   // d (the least of them), D / 2 elsewhere. Zones also make the grid finer, by halvings of its
   // step, as their d and max error require.
   std::vector<Zone> zones = {};
-  // Adds such zones along sharp concave edges of the mesh (concave_edges.h).
+  // Adds such zones along sharp concave edges of the mesh.
   bool keep_concave_edges = false;
   // Random placement: number of attempts (the paper's "limit") and seed.
   std::size_t limit = 100000;
@@ -231,7 +230,6 @@ struct CoverLevel {
 // The options of simplify(), and what is derived from them.
 //
 // @code{.cpp}
-// #include <spherule/simplifier/types/simplification.h>
 // #include <vector>
 //
 // const std::vector<spherule::Sphere> tool{{{0, 0, 0}, 5}, {{0, 0, 40}, 8}};
@@ -271,7 +269,7 @@ struct SimplifyOptions {
   double min_radius = 0.0;
   // Where E and D are smaller.
   std::vector<Zone> zones = {};
-  // D is smaller along sharp concave edges too (concave_edges.h).
+  // D is smaller along sharp concave edges too.
   bool keep_concave_edges = false;
   CoverMethod method = CoverMethod::kCover;
   // Where it is set, it is run instead of `method`, with the CoverOptions that cover() would get.
@@ -290,8 +288,7 @@ struct SimplifyOptions {
   std::stop_token stop = {};                        // CoverOptions::stop, of the levels, too
 };
 
-// A lower and an upper bound of a length: proved in a Certificate, true up to rounding in a
-// MeshDeviation (bench/baseline/mesh_methods.h).
+// A lower and an upper bound of a length, proved in a Certificate.
 struct Bounds {
   double lower = 0.0;
   double upper = 0.0;

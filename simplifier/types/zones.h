@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Parts of space in which E or D is smaller.
+// Parts of space in which E or D is smaller, and their files.
 //
 // @code{.cpp}
 // #include <spherule/simplifier/types/zones.h>
