@@ -2,13 +2,6 @@
 #pragma once
 
 // The checksum of the library's binary files.
-//
-// @code{.cpp}
-// #include <spherule/base/crc64.h>
-// #include <cassert>
-//
-// assert(spherule::crc64("123456789") == 0x995DC9BBDF1939FA);
-// @endcode
 
 #include <cstdint>
 #include <string_view>

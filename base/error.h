@@ -4,7 +4,7 @@
 // The exception for input that cannot be used.
 //
 // @code{.cpp}
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <spherule/base/error.h>
 // #include <cassert>
 //

@@ -2,17 +2,6 @@
 #pragma once
 
 // Files that appear whole or not at all.
-//
-// @code{.cpp}
-// #include <spherule/base/files.h>
-// #include <cassert>
-// #include <filesystem>
-//
-// const auto path = std::filesystem::temp_directory_path() / "spherule_example.txt";
-// spherule::check_writable(path);  // before long work
-// spherule::write_file_atomically(path, "all of it\n");
-// assert(spherule::read_file(path) == "all of it\n");
-// @endcode
 
 #include <filesystem>
 #include <span>
@@ -54,14 +43,6 @@ std::filesystem::path absolute_path(const std::filesystem::path& path);
 }  // namespace spherule
 
 // Other programs, run for what they write.
-//
-// @code{.cpp}
-// #include <vector>
-//
-// const std::vector<std::string> words{"a", "b"};
-// const auto output = spherule::internal::run_program("echo", words, 1);
-// assert(output.status == 0 && output.bytes == "a b\n");
-// @endcode
 
 namespace spherule::internal {
 

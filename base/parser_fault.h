@@ -21,11 +21,7 @@ std::string xml_fault(std::string_view error_name, int line);
 // instructions are no tags.
 std::string fault_of_large_tag(std::string_view xml);
 
-}  // namespace spherule::internal
-
 // Where the markup of an XML text ends, told without parsing it.
-
-namespace spherule::internal {
 
 // Behind the end of the tag that starts at `begin`, whose values may hold what would end it; the
 // size of the text if it does not end.

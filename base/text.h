@@ -55,11 +55,7 @@ PercentDecoded percent_decoded(std::string_view text);
 // A text in quotes for a message; of a long one the first 60 characters.
 std::string in_quotes(std::string_view text);
 
-}  // namespace spherule::internal
-
 // Which name may have been meant, for messages about one that is not known.
-
-namespace spherule::internal {
 
 // "; did you mean NAME?" with the one of `known` that differs least from `word`, if only a few
 // letters do: one in three, one of two in a name of two, neighbours that are swapped counting as

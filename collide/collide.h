@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/collide/collide.h>
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
 // //
 // const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 1}, {{2, 0, 0}, 1}};

@@ -16,7 +16,6 @@
 // @endcode
 
 #include "geometry/sphere.h"
-#include "spheretree/build.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>

@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/collide/sweep.h>
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
 // #include <vector>
 //

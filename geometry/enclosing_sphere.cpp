@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 
 #include <algorithm>
 #include <array>

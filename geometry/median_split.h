@@ -2,16 +2,6 @@
 #pragma once
 
 // How bounding volume hierarchies halve what they are built over.
-//
-// @code{.cpp}
-// #include <spherule/geometry/median_split.h>
-// #include <cassert>
-// #include <vector>
-//
-// std::vector<double> x{5, 1, 4, 2, 3};
-// auto half = spherule::internal::split_at_median(std::span(x), [](double k) { return k; });
-// assert(half == 2 && x[0] + x[1] == 3);
-// @endcode
 
 #include <Eigen/Geometry>
 

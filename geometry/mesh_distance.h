@@ -2,18 +2,6 @@
 #pragma once
 
 // Distances to the surface of a mesh, between proved bounds.
-//
-// @code{.cpp}
-// #include <spherule/geometry/mesh_distance.h>
-// #include <cassert>
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const spherule::MeshDistance mesh(tetrahedron);
-// const spherule::SurfaceDistance below = mesh({0.25, 0.25, -2});
-// assert(below.lower <= 2.0 && 2.0 <= below.upper && below.triangle == 0);
-// assert(mesh.winding_number({0.1, 0.1, 0.1}) > 0.999);  // inside
-// @endcode
 
 #include "geometry/triangle_mesh.h"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/mesh_report.h"
-
 #include "base/disjoint_sets.h"
 #include "geometry/median_split.h"
 #include "geometry/self_intersection.h"
+#include "geometry/triangle_mesh.h"
 #include "geometry/weld.h"
 
 #include <Eigen/Geometry>

@@ -2,16 +2,6 @@
 #pragma once
 
 // The distance between a point and a triangle.
-//
-// @code{.cpp}
-// #include <spherule/geometry/point_triangle.h>
-// #include <cassert>
-//
-// const auto distance =
-//     spherule::point_triangle_distance({0.25, 0.25, 2}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-// assert(distance.lower <= 2.0 && 2.0 <= distance.upper);
-// assert(distance.upper - distance.lower < 1e-13);
-// @endcode
 
 #include "base/rounding.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Spheres, and predicates that err on one side only.
+// Spheres, predicates that err on one side only, and enclosing spheres.
 //
 // @code{.cpp}
 // #include <spherule/geometry/sphere.h>
@@ -17,6 +17,8 @@
 #include "base/rounding.h"
 
 #include <Eigen/Core>
+
+#include <span>
 
 namespace spherule {
 
@@ -56,5 +58,23 @@ inline bool certainly_contains(const Sphere& sphere, const Eigen::Vector3d& poin
 inline bool possibly_overlap(const Sphere& a, const Sphere& b) {
   return distance_lower(a.center, b.center) <= add_up(a.radius, b.radius);
 }
+
+// Smallest enclosing spheres, rounded up.
+//
+// @code{.cpp}
+// #include <vector>
+//
+// const std::vector<Eigen::Vector3d> points{{-1, 0, 0}, {1, 0, 0}, {0, 0.5, 0}};
+// const spherule::Sphere sphere = spherule::enclosing_sphere(points);
+// for (const Eigen::Vector3d& point : points) assert(certainly_contains(sphere, point));
+// assert(sphere.radius < 1.0 + 1e-12);
+// @endcode
+
+// The smallest sphere that encloses all points, or all spheres, up to rounding (Fischer and
+// Gaertner, "The smallest enclosing ball of balls", 2003): its radius is rounded up so that it
+// encloses them in exact arithmetic (certainly_encloses() or certainly_contains() holds for each).
+// The input must not be empty.
+Sphere enclosing_sphere(std::span<const Eigen::Vector3d> points);
+Sphere enclosing_sphere(std::span<const Sphere> spheres);
 
 }  // namespace spherule

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/length_unit.h"
-
 #include "base/files.h"
 #include "io/mesh_io.h"
 #include "io/mesh_readers.h"

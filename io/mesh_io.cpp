@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rounding.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "geometry/vertex_rounding.h"
 #include "geometry/weld.h"
 #include "io/mesh_readers.h"

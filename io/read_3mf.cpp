@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/text.h"
-#include "io/length_unit.h"
+#include "io/mesh_io.h"
 #include "io/mesh_readers.h"
 #include "io/placement.h"
 #include "io/polygon_triangles.h"

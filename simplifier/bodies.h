@@ -2,20 +2,6 @@
 #pragma once
 
 // The bodies of an assembly, each covered by itself.
-//
-// @code{.cpp}
-// #include <spherule/simplifier/bodies.h>
-// #include <cassert>
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const spherule::BodyCopy copy{.of = 0, .pose = spherule::Pose::from_translation({2, 0, 0})};
-// const std::vector<spherule::Body> bodies{{.name = "left", .mesh = tetrahedron},
-//                                          {.name = "right", .mesh = {}, .copy = copy}};
-// const auto fits = spherule::fit_bodies(bodies, {.max_error = 0.5, .effort = 0});
-// assert(fits[0].broken.empty() && fits[1].certificate.covered);
-// assert(fits[0].spheres.size() == fits[1].spheres.size());
-// @endcode
 
 #include "geometry/pose.h"
 #include "geometry/sphere.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/types/certificate.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
@@ -13,6 +11,7 @@
 #include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/solid/sphere_hierarchy.h"
+#include "simplifier/types/simplification.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>

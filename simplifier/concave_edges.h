@@ -2,17 +2,6 @@
 #pragma once
 
 // Zones of a smaller D along concave edges.
-//
-// @code{.cpp}
-// #include <spherule/simplifier/concave_edges.h>
-// #include <cassert>
-//
-// const spherule::TriangleMesh groove{{{0, 0, 0}, {0, 1, 0}, {1, 0, 1}, {-1, 0, 1}},
-//                                     {{0, 2, 1}, {0, 1, 3}}};  // seen from above
-// const auto zones =
-//     spherule::concave_edge_zones(groove, {.min_external_diameter = 1.0, .max_error = 0.2});
-// assert(zones.size() == 1 && zones[0].min_external_diameter < 1.0);
-// @endcode
 
 #include "geometry/triangle_mesh.h"
 #include "simplifier/types/zones.h"

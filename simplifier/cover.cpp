@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/types/cover.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/stopwatch.h"
@@ -15,8 +13,8 @@
 #include "simplifier/stage2/cover_fitter.h"
 #include "simplifier/stage2/cover_moves.h"
 #include "simplifier/stage2/paper/internal_spheres.h"
-#include "simplifier/types/levels.h"
-#include "spheretree/build.h"
+#include "simplifier/types/simplification.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cstddef>

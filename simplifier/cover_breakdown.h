@@ -2,24 +2,10 @@
 #pragma once
 
 // Where the count of a cover goes.
-//
-// @code{.cpp}
-// #include <spherule/simplifier/cover_breakdown.h>
-// #include <spherule/simplifier/types/cover.h>
-// #include <cassert>
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const auto external = spherule::place_external_spheres(
-//     tetrahedron, {.min_external_diameter = 2, .max_error = 0.5});
-// const auto cover = spherule::cover(tetrahedron, external, {.max_error = 0.5, .effort = 0});
-// const auto parts = spherule::cover_breakdown(tetrahedron, external, cover.spheres, 0.5);
-// assert(parts.edges > 0 && parts.roles.size() == cover.spheres.size());
-// @endcode
 
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 
 #include <cstddef>
 #include <span>

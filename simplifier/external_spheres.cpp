@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simplifier/types/external_spheres.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/threads.h"
 #include "geometry/mesh_distance.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/concave_edges.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/simplify.h"
 #include "simplifier/solid/cells.h"
 #include "simplifier/stage1/flood_grid.h"
 #include "simplifier/stage1/random_placement.h"
+#include "simplifier/types/simplification.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,17 +2,6 @@
 #pragma once
 
 // Where a mesh sticks out of spheres, for showing where to look.
-//
-// @code{.cpp}
-// #include <spherule/simplifier/leaks.h>
-// #include <cassert>
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const std::vector<spherule::Sphere> spheres{{{0.25, 0.25, 0.25}, 0.5}};
-// const auto leaks = spherule::leak_points(tetrahedron, spheres);
-// assert(!leaks.empty() && leaks[0].depth >= leaks.back().depth && leaks.back().depth > 0.0);
-// @endcode
 
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
@@ -48,21 +37,6 @@ struct LeakPointOptions {
 // spheres that are not usable, and options out of range.
 std::vector<LeakPoint> leak_points(const TriangleMesh& mesh, std::span<const Sphere> spheres,
                                    const LeakPointOptions& options = {});
-
-}  // namespace spherule
-
-// The part of a mesh that sticks out of spheres, as a surface to be coloured by its depth.
-//
-// @code{.cpp}
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const std::vector<spherule::Sphere> spheres{{{0.25, 0.25, 0.25}, 0.5}};
-// const spherule::LeakSurface leaks = spherule::leak_surface(tetrahedron, spheres);
-// assert(!leaks.mesh.triangles.empty() && leaks.depths.size() == leaks.mesh.vertices.size());
-// @endcode
-
-namespace spherule {
 
 // Pieces of a surface, and how far each of their vertices is outside of all spheres.
 struct LeakSurface {

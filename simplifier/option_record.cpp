@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "base/text.h"
-#include "simplifier/zone_file.h"
+#include "simplifier/types/zones.h"
 
 #include <algorithm>
 #include <array>

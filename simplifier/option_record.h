@@ -3,21 +3,9 @@
 
 // The options of simplify() as they are stored beside the spheres, and back; the names that its
 // methods, placements and levels have there and on the command line.
-//
-// @code{.cpp}
-// #include <spherule/simplifier/option_record.h>
-// #include <cassert>
-//
-// const auto record = spherule::option_record({.max_error = 0.5, .levels = {1, 2}}, 1000);
-// const spherule::SimplifyOptions options = spherule::options_from_record(record);
-// assert(options.max_error == 0.5 && options.levels[1] == 2);
-// assert(spherule::method_names()[0] == "cover");
-// @endcode
 
 #include "io/sphere_file.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
-#include "simplifier/types/simplify_options.h"
+#include "simplifier/types/simplification.h"
 
 #include <map>
 #include <span>

@@ -20,8 +20,7 @@
 
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 #include "simplifier/types/zones.h"
 
 #include <cstddef>

@@ -5,13 +5,11 @@
 #include "base/rounding.h"
 #include "base/stopwatch.h"
 #include "base/threads.h"
-#include "geometry/mesh_report.h"
 #include "geometry/triangle_mesh.h"
 #include "simplifier/internal/stages.h"
 #include "simplifier/option_record.h"
 #include "simplifier/types/simplification.h"
-#include "simplifier/types/simplify_options.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -20,13 +20,7 @@
 
 #include "geometry/triangle_mesh.h"
 #include "io/sphere_file.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
-#include "simplifier/types/levels.h"
 #include "simplifier/types/simplification.h"
-#include "simplifier/types/simplify_options.h"
-#include "spheretree/level_tree.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstddef>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/build.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
-#include "spheretree/check.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_nodes.h"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spheretree/level_tree.h"
-
 #include "base/error.h"
 #include "base/rounding.h"
+#include "spheretree/sphere_tree.h"
 
 #include <queue>
 #include <string>

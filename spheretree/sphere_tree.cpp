@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "base/rounding.h"
-#include "spheretree/check.h"
 #include "spheretree/tree_nodes.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // Sphere trees in files.
 //
 // @code{.cpp}
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <spherule/spheretree/tree_file.h>
 // #include <cassert>
 // #include <filesystem>
@@ -24,7 +24,7 @@ namespace spherule {
 
 // Writes the tree in the binary format of docs/tree-file.md: magic, format version, counts, the
 // arrays as little-endian IEEE doubles and 32-bit integers, and a checksum of all of it. The file
-// appears whole or not at all (base/files.h). Equal trees give equal bytes. Throws Error, naming
+// appears whole or not at all. Equal trees give equal bytes. Throws Error, naming
 // the file, if it cannot be written.
 void save_tree(const SphereTree& tree, const std::filesystem::path& path);
 

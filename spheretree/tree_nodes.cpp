@@ -2,8 +2,8 @@
 #include "spheretree/tree_nodes.h"
 
 #include "base/error.h"
-#include "geometry/enclosing_sphere.h"
 #include "geometry/median_split.h"
+#include "geometry/sphere.h"
 
 #include <algorithm>
 #include <array>

@@ -28,11 +28,7 @@ struct BinaryNode {
 // The splits that build_tree() describes; `spheres` is not empty. The root is the first node.
 std::vector<BinaryNode> binary_tree(std::span<const Sphere> spheres);
 
-}  // namespace spherule::internal
-
 // What building, refitting and checking a tree share: the spheres of its nodes.
-
-namespace spherule::internal {
 
 // Throws Error if a number in `spheres` is not usable.
 void require_usable(std::span<const Sphere> spheres);
@@ -50,11 +46,7 @@ Sphere sphere_around_children(const SphereTreeData& data, std::size_t node);
 // Throws Error if the sphere of the root is too large to be usable.
 void check_root(const SphereTreeData& data);
 
-}  // namespace spherule::internal
-
 // Which nodes of a binary tree are kept when it is made wide.
-
-namespace spherule::internal {
 
 // The choice for which the squares of the radii of all inner nodes that are kept sum up to the
 // least: a node is tested by a query about as often as that. O(n branching^2) time, O(n branching)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "adapters/fcl/collide.h"
 
-#include "adapters/fcl/broadphase_callback.h"
 #include "base/error.h"
 #include "collide/collide.h"
 #include "collide/meshes/mesh_contact.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "adapters/fcl/sphere_model.h"
-
+#include "adapters/fcl/collide.h"
 #include "base/error.h"
 
 #include <string>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
 #include "bench/baseline/mesh_methods.h"
-#include "geometry/mesh_report.h"
 #include "geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>

@@ -4,7 +4,7 @@
 #include "base/threads.h"
 #include "bench/baseline/medial_spheres.h"
 #include "bench/baseline/sphere_methods.h"
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 #include "simplifier/solid/sphere_hierarchy.h"
 
 #include <algorithm>

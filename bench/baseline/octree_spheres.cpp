@@ -3,8 +3,8 @@
 #include "base/rounding.h"
 #include "bench/baseline/cell_octree.h"
 #include "bench/baseline/sphere_methods.h"
-#include "geometry/enclosing_sphere.h"
 #include "geometry/mesh_distance.h"
+#include "geometry/sphere.h"
 #include "simplifier/stage2/cover_moves.h"
 
 #include <algorithm>

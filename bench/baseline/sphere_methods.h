@@ -4,7 +4,6 @@
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
-#include "spheretree/level_tree.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cstddef>

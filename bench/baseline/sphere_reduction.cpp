@@ -2,7 +2,7 @@
 #include "base/rounding.h"
 #include "base/threads.h"
 #include "bench/baseline/medial_spheres.h"
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 #include "geometry/weld.h"
 #include "simplifier/stage2/search/cover_search.h"
 

@@ -5,8 +5,7 @@
 // Counters: nodes, depth, radius of the root, growth (radius over that of the largest child, mean)
 // and overlap (spheres that hold the centre of a sphere, to those that must, above its leaf).
 
-#include "spheretree/build.h"
-#include "spheretree/check.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/random.h"
 
 #include <benchmark/benchmark.h>

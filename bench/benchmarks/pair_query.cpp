@@ -4,7 +4,7 @@
 
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/random.h"
 
 #include <benchmark/benchmark.h>

@@ -7,8 +7,8 @@
 #include "bench/checkers/sphere_checkers.h"
 #include "bench/checkers/workload.h"
 #include "bench/scenes/work_cell.h"
-#include "geometry/enclosing_sphere.h"
-#include "spheretree/build.h"
+#include "geometry/sphere.h"
+#include "spheretree/sphere_tree.h"
 
 #include <benchmark/benchmark.h>
 

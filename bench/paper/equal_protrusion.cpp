@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "bench/baseline/sphere_methods.h"
 #include "bench/paper/paper.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/mesh_io.h"
 #include "simplifier/simplify.h"
 #include "tests/support/shapes.h"

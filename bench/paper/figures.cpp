@@ -7,7 +7,7 @@
 #include "bench/studies/refined_cover.h"
 #include "collide/collide.h"
 #include "simplifier/simplify.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"
 

@@ -6,7 +6,7 @@
 #include "bench/studies/measure.h"
 #include "bench/studies/study.h"
 #include "simplifier/simplify.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/program.h"
 #include "tests/support/shapes.h"
 

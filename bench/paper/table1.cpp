@@ -8,7 +8,7 @@
 #include "bench/paper/paper.h"
 #include "bench/studies/measure.h"
 #include "simplifier/simplify.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cstdint>

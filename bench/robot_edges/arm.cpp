@@ -6,12 +6,12 @@
 #include "bench/studies/refined_cover.h"
 #include "collide/meshes/solid_mesh.h"
 #include "collide/point_cloud.h"
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 #include "io/mesh_io.h"
 #include "robot/check/robot_collision.h"
-#include "robot/cover/link_mesh.h"
-#include "robot/files/urdf.h"
-#include "spheretree/build.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/files/robot_description.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <array>

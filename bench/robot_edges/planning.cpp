@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/robot_edges/planning.h"
 
-#include "adapters/ompl/motion_validator.h"
-#include "adapters/ompl/state_validity_checker.h"
+#include "adapters/ompl/validators.h"
 #include "base/error.h"
 #include "bench/robot_edges/arm.h"
 #include "bench/studies/measure.h"

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "bench/scenes/work_cell.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include "bench/studies/study.h"
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <cmath>
 #include <memory>

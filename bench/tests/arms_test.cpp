@@ -4,7 +4,7 @@
 #include "bench/robot_edges/peer_arms.h"
 #include "bench/robot_edges/planning.h"
 #include "bench/studies/refined_cover.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>

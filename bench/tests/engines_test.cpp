@@ -6,7 +6,7 @@
 #include "bench/scenes/work_cell.h"
 #include "bench/studies/measure.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 #include "tests/support/solids.h"

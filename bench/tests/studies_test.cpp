@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "bench/scenes/work_cell.h"
 #include "bench/studies/refined_cover.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"

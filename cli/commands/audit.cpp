@@ -10,7 +10,7 @@
 #include "cli/text/json.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/sphere_file.h"
 #include "simplifier/leaks.h"
 #include "simplifier/option_record.h"

@@ -15,7 +15,7 @@
 #include "robot/check/robot_checker.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/pairs/link_pairs.h"
 
 #include <CLI/CLI.hpp>
@@ -96,7 +96,7 @@ PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCov
   bar.clear();
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
-  for (const DisabledPair& pair : robot.ignored) allowed.allow(pair.link_a, pair.link_b);
+  allowed.allow(robot.ignored);
   prepared.scene.set_allowed_collisions(std::move(allowed));
   return prepared;
 }

@@ -8,7 +8,7 @@
 #include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "robot/cover/link_mesh.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/pairs/srdf_judgement.h"
 
 #include <CLI/CLI.hpp>

@@ -11,13 +11,13 @@
 #include "cli/text/json.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/sphere_file.h"
 #include "simplifier/cover_breakdown.h"
 #include "simplifier/option_record.h"
 #include "simplifier/simplify.h"
-#include "simplifier/zone_file.h"
-#include "spheretree/build.h"
+#include "simplifier/types/zones.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

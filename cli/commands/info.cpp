@@ -10,15 +10,14 @@
 #include "cli/options/options.h"
 #include "cli/text/json.h"
 #include "cli/text/print.h"
-#include "geometry/enclosing_sphere.h"
-#include "geometry/mesh_report.h"
+#include "geometry/sphere.h"
+#include "geometry/triangle_mesh.h"
 #include "io/sphere_file.h"
-#include "spheretree/check.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_file.h"
 
 #ifdef SPHERULE_HAS_ROBOT
-#include "robot/files/srdf.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
 #endif
 

@@ -13,10 +13,11 @@
 #include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
+#include "robot/check/robot_collision.h"
 #include "robot/check/scene_setup.h"
 #include "robot/cover/robot_spheres.h"
-#include "robot/files/srdf.h"
-#include "robot/model/link_spheres.h"
+#include "robot/files/robot_description.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "simplifier/simplify.h"
 
@@ -168,12 +169,6 @@ void check_places(const RobotArguments& arguments, std::vector<fs::path> outputs
   }
 }
 
-std::vector<std::pair<std::string, std::string>> names_of(const std::vector<DisabledPair>& pairs) {
-  std::vector<std::pair<std::string, std::string>> names;
-  for (const DisabledPair& pair : pairs) names.emplace_back(pair.link_a, pair.link_b);
-  return names;
-}
-
 // What is false is not handed on to other files as a reason.
 std::vector<DisabledPair> without_refuted_reasons(std::vector<DisabledPair> pairs,
                                                   const SrdfJudgement& judgement) {
@@ -236,7 +231,7 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
                                                  const MeasuredCover& measured) {
   const RobotModel model = with_spheres(robot.model, spheres.links);
   AllowedCollisions allowed(model);
-  allowed.allow(names_of(spheres.self_collision_ignore));
+  allowed.allow(spheres.self_collision_ignore);
   std::vector<NamedPosture> postures = group_postures(model, semantics);
   postures.insert(postures.begin(), zero_posture(model));
   return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
@@ -355,7 +350,7 @@ int cover_links(RobotArguments& arguments) {
     options.progress = bar.callback();
     options.on_doubt = warnings.on_doubt(bar);
     return in_file(arguments.urdf, [&] {
-      return run.cover(options, arguments.command->count("--max-error") > 0, names_of(disabled));
+      return run.cover(options, arguments.command->count("--max-error") > 0, disabled);
     });
   }();
   const RobotCover& result = measured.cover;

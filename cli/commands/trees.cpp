@@ -10,7 +10,7 @@
 #include "cli/text/progress.h"
 #include "collide/collide.h"
 #include "io/sphere_file.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_file.h"
 
 #include <CLI/CLI.hpp>

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "cli/cad/cad_process.h"
 #include "cli/text/print.h"
-#include "io/length_unit.h"
 #include "io/mesh_io.h"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/files/model.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
 
 #include <string>

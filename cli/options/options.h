@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/text/json.h"
-#include "io/length_unit.h"
+#include "io/mesh_io.h"
 
 #include <cstddef>
 #include <cstdint>

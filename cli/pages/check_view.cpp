@@ -9,7 +9,7 @@
 #include "cli/text/print.h"
 #include "io/sphere_file.h"
 #include "robot/check/scene_setup.h"
-#include "robot/cover/link_mesh.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/model/joint_positions.h"
 #include "spheretree/tree_file.h"
 

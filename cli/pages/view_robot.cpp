@@ -7,10 +7,11 @@
 #include "cli/pages/view_files.h"
 #include "cli/pages/view_page.h"
 #include "cli/robots/robot_input.h"
+#include "robot/check/robot_collision.h"
 #include "robot/check/scene_setup.h"
-#include "robot/cover/link_mesh.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <filesystem>

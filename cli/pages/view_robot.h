@@ -6,7 +6,7 @@
 #include "cli/robots/trajectory.h"
 #include "cli/text/json.h"
 #include "geometry/pose.h"
-#include "robot/cover/link_mesh.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/robot_model.h"
 

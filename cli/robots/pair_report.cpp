@@ -3,8 +3,8 @@
 
 #include "cli/text/print.h"
 #include "cli/text/progress.h"
-#include "robot/cover/link_mesh.h"
-#include "robot/model/link_spheres.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
 
@@ -204,7 +204,7 @@ PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
                   [](const DisabledPair& pair) { return pair.reason == kProvedNeverReason; });
   }
   AllowedCollisions allowed(kinds.model);
-  for (const DisabledPair& pair : given) allowed.allow(pair.link_a, pair.link_b);
+  allowed.allow(given);
   kinds.pairs = pair_statuses(kinds.model, allowed, kinds.proofs);
   return kinds;
 }

@@ -4,7 +4,7 @@
 #include "cli/text/json.h"
 #include "robot/check/robot_collision.h"
 #include "robot/check/scene_setup.h"
-#include "robot/cover/link_mesh.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/link_pairs.h"

@@ -9,7 +9,7 @@
 #include "cli/robots/pair_report.h"
 #include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
-#include "robot/model/link_spheres.h"
+#include "robot/model/robot_model.h"
 #include "simplifier/option_record.h"
 
 #include <CLI/CLI.hpp>
@@ -227,7 +227,7 @@ void FalseAlarmRun::prove(const RobotCoverOptions& options, MeasuredCover& resul
 }
 
 void FalseAlarmRun::cover_to_goal(const RobotCoverOptions& options, bool has_max_error,
-                                  const std::vector<std::pair<std::string, std::string>>& disabled,
+                                  std::span<const DisabledPair> disabled,
                                   const FalseAlarmOptions& sample, MeasuredCover& result) const {
   LinkErrorOptions goal{.goal = *goal_, .given = poses_.positions, .sample = sample};
   if (has_max_error) {
@@ -245,9 +245,8 @@ void FalseAlarmRun::cover_to_goal(const RobotCoverOptions& options, bool has_max
   result.choice = std::move(found.choice);
 }
 
-MeasuredCover FalseAlarmRun::cover(
-    const RobotCoverOptions& options, bool has_max_error,
-    const std::vector<std::pair<std::string, std::string>>& disabled) const {
+MeasuredCover FalseAlarmRun::cover(const RobotCoverOptions& options, bool has_max_error,
+                                   std::span<const DisabledPair> disabled) const {
   const std::size_t usual =
       goal_ ? LinkErrorOptions{}.sample.postures : FalseAlarmOptions{}.postures;
   const FalseAlarmOptions sample{.postures = postures_ > 0 ? postures_ : usual,

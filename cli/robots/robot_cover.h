@@ -57,14 +57,14 @@ class FalseAlarmRun {
 
   // Pairs of links that are not tested stand in `disabled`.
   MeasuredCover cover(const RobotCoverOptions& options, bool has_max_error,
-                      const std::vector<std::pair<std::string, std::string>>& disabled) const;
+                      std::span<const DisabledPair> disabled) const;
 
  private:
   // Fills in what is proved of the bodies.
   void prove(const RobotCoverOptions& options, MeasuredCover& result) const;
   void cover_to_goal(const RobotCoverOptions& options, bool has_max_error,
-                     const std::vector<std::pair<std::string, std::string>>& disabled,
-                     const FalseAlarmOptions& sample, MeasuredCover& result) const;
+                     std::span<const DisabledPair> disabled, const FalseAlarmOptions& sample,
+                     MeasuredCover& result) const;
 
   const RobotDescription& robot_;
   std::optional<double> goal_;

@@ -3,10 +3,12 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "robot/check/robot_collision.h"
 #include "robot/check/scene_setup.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
-#include "spheretree/build.h"
+#include "robot/pairs/srdf_judgement.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_file.h"
 
 #include <climits>

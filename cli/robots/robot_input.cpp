@@ -7,8 +7,8 @@
 #include "cli/help/help.h"
 #include "cli/options/options.h"
 #include "cli/text/print.h"
-#include "robot/model/link_spheres.h"
-#include "simplifier/zone_file.h"
+#include "robot/model/robot_model.h"
+#include "simplifier/types/zones.h"
 
 #include <CLI/CLI.hpp>
 

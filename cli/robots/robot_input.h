@@ -5,8 +5,7 @@
 
 #include "cli/text/progress.h"
 #include "robot/cover/robot_spheres.h"
-#include "robot/files/srdf.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/robot_model.h"
 

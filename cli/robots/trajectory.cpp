@@ -5,7 +5,7 @@
 #include "cli/files/files.h"
 #include "cli/text/print.h"
 #include "robot/check/robot_checker.h"
-#include "robot/model/shortest_motion.h"
+#include "robot/model/kinematics.h"
 
 #include <CLI/CLI.hpp>
 

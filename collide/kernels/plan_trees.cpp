@@ -2,7 +2,7 @@
 #include "collide/kernels/plan_trees.h"
 
 #include "collide/meshes/spheres_inside.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <Eigen/Geometry>
 

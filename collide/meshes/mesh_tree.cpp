@@ -9,9 +9,9 @@
 #include "collide/search/packed_tree.h"
 #include "collide/search/queries.h"
 #include "collide/search/query.h"
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 #include "geometry/triangles.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <Eigen/Geometry>
 

@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/collide/meshes/mesh_tree.h>
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
 //
 // const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},

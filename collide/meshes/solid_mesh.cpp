@@ -9,7 +9,7 @@
 #include "collide/search/query.h"
 #include "collide/search/traversal.h"
 #include "geometry/point_triangle.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <Eigen/Geometry>
 

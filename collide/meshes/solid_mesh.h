@@ -6,7 +6,7 @@
 // @code{.cpp}
 // #include <spherule/collide/solids/primitive.h>
 // #include <spherule/collide/meshes/solid_mesh.h>
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
 // #include <vector>
 //

@@ -2,7 +2,7 @@
 #include "collide/search/packed_tree.h"
 
 #include "base/rounding.h"
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 
 #include <algorithm>
 #include <cassert>

@@ -9,9 +9,7 @@
 #include <iostream>
 #include <mpi.h>
 #include <random>
-#include <spherule/robot/check/robot_scene.h>
-#include <spherule/robot/cover/robot_spheres.h>
-#include <spherule/robot/files/urdf.h>
+#include <spherule/robot.h>
 #include <string>
 #include <vector>
 

@@ -3,10 +3,7 @@
 // (docs/cpp_robot.md).
 #include <iostream>
 #include <memory>
-#include <spherule/robot/check/robot_scene.h>
-#include <spherule/robot/cover/robot_spheres.h>
-#include <spherule/robot/files/urdf.h>
-#include <spherule/spheretree/build.h>
+#include <spherule/robot.h>
 #include <vector>
 
 using namespace spherule;

@@ -12,10 +12,8 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
-#include <spherule/adapters/ompl/motion_validator.h>
-#include <spherule/adapters/ompl/state_validity_checker.h>
-#include <spherule/robot/check/robot_scene.h>
-#include <spherule/spheretree/build.h>
+#include <spherule/adapters/ompl/validators.h>
+#include <spherule/robot.h>
 #include <vector>
 
 namespace ob = ompl::base;

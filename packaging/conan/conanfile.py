@@ -41,7 +41,7 @@ class Spherule(ConanFile):
     def export_sources(self):
         for folder in FOLDERS:
             copy(self, f"{folder}/*", self.root, self.export_sources_folder)
-        for file in ("CMakeLists.txt", "LICENSE", "README.md", "CHANGELOG.md"):
+        for file in ("CMakeLists.txt", "LICENSE", "README.md", "CHANGELOG.md", "collide.h", "robot.h", "simplifier.h"):
             copy(self, file, self.root, self.export_sources_folder)
 
     def validate(self):

@@ -2,7 +2,6 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "geometry/mesh_distance.h"
-#include "geometry/mesh_report.h"
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
 #include "io/mesh_io.h"

@@ -4,10 +4,10 @@
 #include "python/bindings/support.h"
 #include "robot/check/robot_collision.h"
 #include "robot/cover/audit_robot.h"
-#include "robot/cover/link_mesh.h"
 #include "robot/cover/robot_spheres.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
+#include "robot/pairs/proof_scope.h"
 
 #include <array>
 #include <pybind11/stl.h>
@@ -341,9 +341,7 @@ AllowedPointer allowed_from(const py::tuple& state) {
 }
 
 void allow_disabled(AllowedOfRobot& self, const py::object& pairs) {
-  std::vector<std::pair<std::string, std::string>> names;
-  for (const DisabledPair& pair : pairs_of(pairs)) names.emplace_back(pair.link_a, pair.link_b);
-  self.allowed.allow(names);
+  self.allowed.allow(pairs_of(pairs));
 }
 
 py::object allow_by_samples(AllowedOfRobot& self, std::size_t configurations, std::uint64_t seed) {
@@ -375,13 +373,6 @@ void bind_allowed(py::module_& module) {
            Help("allow_pairs(self, pairs)",
                 "The pairs that an SRDF disables: DisabledPair, or what has `link_a` and `link_b`.")
                .c_str())
-      .def(
-          "allow_proved",
-          [](AllowedOfRobot& self, const LinkPairs& pairs) { self.allowed.allow(pairs); },
-          py::arg("pairs"),
-          Help("allow_proved(self, pairs)",
-               "The pairs of LinkPairs that are proved never to touch.")
-              .c_str())
       .def(
           "allow_all", [](AllowedOfRobot& self) { self.allowed.allow_all(); },
           Help("allow_all(self)", "Every pair.").c_str())

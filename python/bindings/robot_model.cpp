@@ -4,11 +4,10 @@
 #include "base/error.h"
 #include "python/bindings/robots.h"
 #include "python/bindings/support.h"
+#include "robot/files/robot_description.h"
 #include "robot/files/trajectory_file.h"
-#include "robot/files/urdf.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/kinematics.h"
-#include "robot/model/link_spheres.h"
 
 #include <array>
 #include <pybind11/stl.h>

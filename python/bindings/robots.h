@@ -5,8 +5,8 @@
 
 #include "robot/check/robot_checker.h"
 #include "robot/check/robot_scene.h"
-#include "robot/cover/link_mesh.h"
-#include "robot/files/srdf.h"
+#include "robot/cover/robot_spheres.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"

@@ -6,7 +6,6 @@
 #include "python/bindings/support.h"
 #include "simplifier/concave_edges.h"
 #include "simplifier/types/zones.h"
-#include "simplifier/zone_file.h"
 
 #include <pybind11/stl.h>
 #include <type_traits>

@@ -15,7 +15,7 @@
 #include "robot/check/robot_scene.h"
 #include "robot/model/link_paths.h"
 #include "robot/model/robot_model.h"
-#include "robot/pairs/free_boxes.h"
+#include "robot/pairs/link_pairs.h"
 
 #include <array>
 #include <cstddef>

@@ -9,8 +9,8 @@
 #include "robot/check/lane_check.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/static_trees.h"
+#include "robot/model/kinematics.h"
 #include "robot/model/robot_model.h"
-#include "robot/model/shortest_motion.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "collide/kernels/check_plan_source.h"
 #include "collide/kernels/plan_trees.h"
 #include "robot/check/body_pairs.h"
-#include "robot/pairs/free_boxes.h"
+#include "robot/pairs/link_pairs.h"
 
 #include <cstddef>
 #include <memory>

@@ -6,7 +6,7 @@
 // @code{.cpp}
 // #include <spherule/robot/check/robot_checker.h>
 // #include <spherule/robot/check/robot_scene.h>
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
 //
 // const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};

@@ -1,26 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Collisions of a robot without a scene: whether a placed robot overlaps a single obstacle, why
-// pairs of its links are tested against each other or not, and which of them touch in sampled
-// configurations. For more, see RobotScene.
-//
-// @code{.cpp}
-// #include <spherule/robot/check/robot_collision.h>
-// #include <spherule/robot/model/kinematics.h>
-// #include <spherule/spheretree/build.h>
-// #include <cassert>
-//
-// const std::vector<spherule::Sphere> spheres{{{1, 0, 0}, 0.1}};
-// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
-// spherule::RobotModel robot("base");
-// robot.attach("base", sphere);
-// std::vector<spherule::Pose> world_from_link;
-// spherule::forward_kinematics(robot, {}, world_from_link);
-// assert(robot_collides(robot, world_from_link, *sphere, {}));
-// @endcode
+// Self-collision, for reports: why pairs of links are tested against each other or not, which of
+// them touch in sampled configurations, and what touches in named ones.
 
-#include "collide/collide.h"
+#include "robot/files/robot_description.h"
 #include "robot/model/robot_model.h"
 #include "robot/pairs/allowed_collisions.h"
 #include "robot/pairs/link_pairs.h"
@@ -30,35 +14,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
-
-namespace spherule {
-
-// Whether a tree on any link overlaps a placed obstacle: collides() for each of them, the last link
-// first, because the tool at the end of the chain is what usually touches. `world_from_link` as
-// forward_kinematics() gives it, one pose for each link; the number is not checked. Links are not
-// tested against each other.
-bool robot_collides(const RobotModel& robot, std::span<const Pose> world_from_link,
-                    const SphereTree& obstacle, const Pose& world_from_obstacle) noexcept;
-
-}  // namespace spherule
-
-// Pairs of links.
-//
-// @code{.cpp}
-// #include <iostream>
-//
-// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
-// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
-// spherule::RobotModel robot("base");
-// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
-// for (const char* const link : {"base", "arm"}) robot.attach(link, sphere);
-// const spherule::AllowedCollisions allowed(robot);
-// const auto statuses = spherule::pair_statuses(robot, allowed, nullptr);
-// assert(statuses.size() == 1 && statuses[0].reason == spherule::AllowedReason::kAdjacent);
-// std::cout << kind_of(statuses[0]) << "\n";
-// @endcode
 
 namespace spherule {
 
@@ -82,31 +40,6 @@ std::vector<PairStatus> pair_statuses(const RobotModel& robot, const AllowedColl
 // The status in a word or two, for people: the reason or, of pairs that are tested everywhere,
 // "can touch", "unknown" or, without proofs, "tested".
 std::string_view kind_of(const PairStatus& status);
-
-}  // namespace spherule
-
-// Sampled configurations.
-//
-// @code{.cpp}
-//
-// const std::vector<spherule::Sphere> spheres{{{0, 0, 0}, 0.1}};
-// const auto sphere = std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
-// spherule::RobotModel robot("base");
-// robot.add_link("plate", "base", {});
-// robot.add_link("arm", "base", {.name = "lift", .type = spherule::JointType::kPrismatic,
-//                                .lower = 1.0, .upper = 2.0});
-// robot.attach("plate", sphere);
-// robot.attach("arm", sphere);
-// spherule::AllowedCollisions allowed(robot);
-// allowed.forbid("plate", "arm");
-// const spherule::SampledCollisions sampled =
-//     spherule::sample_collisions(robot, allowed, {.configurations = 100});
-// assert(sampled.pairs.size() == 1 && sampled.pairs[0].touched == 0);
-// spherule::allow_sampled(sampled, allowed);
-// assert(allowed.reason(1, 2) == spherule::AllowedReason::kNever);
-// @endcode
-
-namespace spherule {
 
 // How configurations are sampled.
 struct SampleCollisionsOptions {
@@ -137,5 +70,42 @@ SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollis
 
 // Allows what never touched, and what always did.
 void allow_sampled(const SampledCollisions& sampled, AllowedCollisions& allowed);
+
+// A configuration of a robot that has a name.
+struct NamedPosture {
+  std::string name;
+  std::vector<double> configuration{};
+};
+
+// Where all variables are zero, or the limit that is nearest to it.
+NamedPosture zero_posture(const RobotModel& robot);
+
+// Where each variable is zero, or, if that is beyond its limits or within a tenth of its range of
+// one, in the middle between them.
+NamedPosture rest_posture(const RobotModel& robot);
+
+// The states of a semantic description's groups, "GROUP/STATE", the other joints as in
+// zero_posture(). What is about joints that the robot has not got, that do not move or follow
+// others, or about several numbers for one joint, is passed over.
+std::vector<NamedPosture> group_postures(const RobotModel& robot,
+                                         const SemanticDescription& semantics);
+
+// Two links whose spheres touch in a posture.
+struct PostureContact {
+  std::string posture;
+  std::string first;
+  std::string second;
+  double overlap_depth = 0.0;    // of the deepest two spheres, in metres
+  bool do_meshes_touch = false;  // their bodies, insides counted
+  bool is_proved_free = false;   // in a free box of the proofs
+};
+
+// What touches in postures, of the links that `allowed` does not allow to: by the spheres that the
+// robot's links carry. `proofs` of the robot and its bodies, or null. Throws Error as RobotScene
+// and forward_kinematics() do.
+std::vector<PostureContact> contacts_in(std::span<const NamedPosture> postures,
+                                        const RobotModel& robot, std::span<const LinkBody> bodies,
+                                        const AllowedCollisions& allowed,
+                                        std::shared_ptr<const LinkPairs> proofs);
 
 }  // namespace spherule

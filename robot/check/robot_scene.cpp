@@ -9,7 +9,7 @@
 #include "robot/model/link_paths.h"
 #include "robot/pairs/link_pairs.h"
 #include "robot/pairs/proof_scope.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cmath>

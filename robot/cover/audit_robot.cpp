@@ -2,7 +2,6 @@
 #include "robot/cover/audit_robot.h"
 
 #include "base/error.h"
-#include "geometry/mesh_report.h"
 #include "geometry/surface_sampling.h"
 #include "geometry/triangle_mesh.h"
 #include "robot/cover/link_parts.h"

@@ -16,8 +16,7 @@
 // @endcode
 
 #include "base/progress.h"
-#include "robot/cover/link_mesh.h"
-#include "robot/model/link_spheres.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/model/robot_model.h"
 #include "simplifier/repair.h"
 #include "simplifier/simplify.h"
@@ -98,12 +97,9 @@ struct RobotAudit {
 RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                        const RobotAuditOptions& options = {});
 
-}  // namespace spherule
-
 // Makes the spheres of a robot, of any origin, cover it.
 //
 // @code{.cpp}
-//
 // spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
 // const spherule::Primitive bar = spherule::Box{.size = {0.01, 0.01, 0.1}};
 // robot.links = {{.name = "base", .collision = {{.name = "bar", .geometry = bar}}}};
@@ -112,8 +108,6 @@ RobotAudit audit_robot(const RobotDescription& robot, std::span<const LinkSphere
 // const auto repaired = spherule::repair_robot(robot, small, {.max_error = 0.06});
 // assert(repaired.links[0].certificate.covered);  // the corners were out
 // @endcode
-
-namespace spherule {
 
 // How a robot's spheres are repaired.
 struct RobotRepairOptions {

@@ -5,8 +5,8 @@
 #include "base/threads.h"
 #include "robot/cover/alarm_sample.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/cover/link_mesh.h"
-#include "spheretree/build.h"
+#include "robot/cover/robot_spheres.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -142,9 +142,8 @@ std::vector<LinkBody> covered_bodies(const RobotDescription& robot,
 }
 
 GoalCover cover_robot_to_goal(const RobotDescription& robot, std::span<const LinkBody> bodies,
-                              std::span<const std::pair<std::string, std::string>> disabled,
-                              const LinkPairs* proofs, const RobotCoverOptions& options,
-                              const LinkErrorOptions& goal) {
+                              std::span<const DisabledPair> disabled, const LinkPairs* proofs,
+                              const RobotCoverOptions& options, const LinkErrorOptions& goal) {
   LinkErrorOptions choice_options = goal;
   RobotCoverOptions first_options = options;
   first_options.effort = 0;

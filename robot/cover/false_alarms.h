@@ -2,27 +2,6 @@
 #pragma once
 
 // How often do a robot's spheres refuse postures that are free by its meshes?
-//
-// @code{.cpp}
-// #include <spherule/robot/cover/false_alarms.h>
-// #include <spherule/spheretree/build.h>
-// #include <cassert>
-//
-// const auto sphere = [](double x, double radius) {
-//   const std::vector<spherule::Sphere> spheres{{{x, 0, 0}, radius}};
-//   return std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
-// };
-// spherule::RobotModel robot("base");
-// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
-// robot.attach("base", sphere(0, 0.6));
-// robot.attach("arm", sphere(1, 0.6));  // larger than the bodies: the spheres overlap always
-// const std::vector<spherule::LinkBody> bodies{{.link = 0, .spheres = sphere(0, 0.1)},
-//                                              {.link = 1, .spheres = sphere(1, 0.1)}};
-// spherule::AllowedCollisions allowed(robot);
-// allowed.forbid("base", "arm");
-// const auto alarms = measure_false_alarms(robot, bodies, allowed, nullptr, {.postures = 100});
-// assert(alarms.free == 100 && alarms.refused_share().share() == 1.0);
-// @endcode
 
 #include "base/progress.h"
 #include "robot/model/robot_model.h"

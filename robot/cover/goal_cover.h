@@ -2,21 +2,6 @@
 #pragma once
 
 // Covers a robot so that its spheres refuse few free postures.
-//
-// @code{.cpp}
-// #include <spherule/robot/cover/goal_cover.h>
-// #include <cassert>
-//
-// spherule::RobotDescription robot{.name = "arm", .model = spherule::RobotModel("base")};
-// robot.model.add_link("bar", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
-// const spherule::Primitive box = spherule::Box{.size = {0.1, 0.1, 0.1}};
-// robot.links = {{.name = "base"}, {.name = "bar", .collision = {{.name = "", .geometry = box}}}};
-// const spherule::RobotCoverOptions options{.effort = 0};
-// const auto bodies = spherule::covered_bodies(robot, options);
-// const spherule::GoalCover made = spherule::cover_robot_to_goal(
-//     robot, bodies, {}, nullptr, options, {.sample = {.postures = 500}});
-// assert(made.choice.is_reached && spherule::links_not_proved(made.cover).empty());
-// @endcode
 
 #include "robot/cover/link_errors.h"
 #include "robot/cover/robot_spheres.h"
@@ -50,8 +35,7 @@ struct GoalCover {
 // The search is done by first covers, those of an effort of 0; what is chosen is covered with the
 // options' effort. Otherwise as cover_robot(), whose promises hold. Throws Error as both.
 GoalCover cover_robot_to_goal(const RobotDescription& robot, std::span<const LinkBody> bodies,
-                              std::span<const std::pair<std::string, std::string>> disabled,
-                              const LinkPairs* proofs, const RobotCoverOptions& options,
-                              const LinkErrorOptions& goal = {});
+                              std::span<const DisabledPair> disabled, const LinkPairs* proofs,
+                              const RobotCoverOptions& options, const LinkErrorOptions& goal = {});
 
 }  // namespace spherule

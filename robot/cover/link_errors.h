@@ -2,31 +2,6 @@
 #pragma once
 
 // E link by link, for few spheres and few false alarms.
-//
-// @code{.cpp}
-// #include <spherule/robot/cover/link_errors.h>
-// #include <spherule/spheretree/build.h>
-// #include <cassert>
-//
-// const auto sphere = [](int link, double radius) {
-//   const std::vector<spherule::Sphere> spheres{{{1.0 * link, 0, 0}, radius}};
-//   return std::make_shared<const spherule::SphereTree>(spherule::build_tree(spheres));
-// };
-// const spherule::CoverLinks covers = [&](std::span<const spherule::LinkError> errors) {
-//   std::vector<std::shared_ptr<const spherule::SphereTree>> trees;
-//   for (const auto& error : errors) trees.push_back(sphere(error.link, 0.48 + error.max_error));
-//   return trees;
-// };
-// spherule::RobotModel robot("base");
-// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
-// spherule::AllowedCollisions allowed(robot);
-// allowed.forbid("base", "arm");
-// const std::vector<spherule::LinkBody> bodies{{.link = 0, .spheres = sphere(0, 0.48)},
-//                                              {.link = 1, .spheres = sphere(1, 0.48)}};
-// const spherule::LinkErrorChoice choice = choose_link_errors(
-//     robot, bodies, allowed, nullptr, covers, nullptr, {.sample = {.postures = 500}});
-// assert(choice.is_reached && choice.links[1].max_error < 0.04);  // 0.04 lets spheres overlap
-// @endcode
 
 #include "robot/cover/false_alarms.h"
 #include "spheretree/sphere_tree.h"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/cover/link_mesh.h"
-
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rounding.h"
 #include "collide/meshes/solid_mesh.h"
-#include "io/length_unit.h"
 #include "io/mesh_io.h"
 #include "robot/cover/link_parts.h"
+#include "robot/cover/robot_spheres.h"
 
 #include <Eigen/Core>
 

@@ -4,11 +4,9 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "collide/solids/primitive.h"
-#include "geometry/mesh_report.h"
 #include "geometry/sphere.h"
 #include "geometry/triangle_mesh.h"
-#include "robot/cover/link_mesh.h"
-#include "robot/model/link_spheres.h"
+#include "robot/cover/robot_spheres.h"
 #include "robot/model/robot_model.h"
 #include "simplifier/simplify.h"
 

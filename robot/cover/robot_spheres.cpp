@@ -5,7 +5,6 @@
 #include "base/rounding.h"
 #include "base/text.h"
 #include "base/threads.h"
-#include "geometry/mesh_report.h"
 #include "geometry/triangle_mesh.h"
 #include "robot/cover/link_parts.h"
 #include "robot/model/link_paths.h"

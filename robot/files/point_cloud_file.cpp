@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/point_cloud_file.h"
-
 #include "base/error.h"
 #include "base/files.h"
 #include "base/rounding.h"
 #include "base/text.h"
 #include "io/ply_data.h"
 #include "robot/files/format_text.h"
+#include "robot/files/scene_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What is around a robot, from a file (docs/scene-file.md).
+// What is around a robot, from a file (docs/scene-file.md), and points from files.
 //
 // @code{.cpp}
 // #include <spherule/robot/files/scene_file.h>
-// #include <spherule/base/files.h>
 // #include <cassert>
+// #include <fstream>
 //
 // const auto path = std::filesystem::temp_directory_path() / "spherule_example.scene.json";
-// spherule::write_file_atomically(path, R"({"format": "spherule-scene", "version": 1,
-//   "obstacles": [{"name": "floor", "half_space": {}}]})");
+// std::ofstream(path) << R"({"format": "spherule-scene", "version": 1,
+//   "obstacles": [{"name": "floor", "half_space": {}}]})";
 // const spherule::SceneDescription scene = spherule::read_scene(path);
 // assert(scene.obstacles[0].name == "floor");
 // @endcode
@@ -19,6 +19,8 @@
 #include "geometry/pose.h"
 #include "geometry/sphere.h"
 #include "robot/model/robot_model.h"
+
+#include <Eigen/Core>
 
 #include <cstdint>
 #include <filesystem>
@@ -39,7 +41,7 @@ struct TreeSource {
   std::filesystem::path path;
 };
 
-// A cloud of points (robot/files/point_cloud_file.h), in the file's own unit, which `scale` turns
+// A cloud of points (read_point_cloud()), in the file's own unit, which `scale` turns
 // into metres; radius and voxel as point_cloud_tree() takes them, in metres.
 struct PointsSource {
   std::filesystem::path path;
@@ -109,5 +111,37 @@ struct SceneDescription {
 // names that are empty or taken; and regions of bodies that the scene and contacts of regions that
 // it has not. Links are not known here.
 SceneDescription read_scene(const std::filesystem::path& path);
+
+// Points from files.
+//
+// @code{.cpp}
+// #include <cmath>
+//
+// const auto path = std::filesystem::temp_directory_path() / "spherule_example.xyz";
+// std::ofstream(path) << "# millimetres\n0 0 0\n1000 0 500\n";
+// const spherule::PointCloudFile cloud = spherule::read_point_cloud(path, 0.001);
+// assert(cloud.points.size() == 2 && std::abs(cloud.points[1].z() - 0.5) <= cloud.point_error);
+// @endcode
+
+// The points of a file, and how exactly they are held.
+struct PointCloudFile {
+  std::vector<Eigen::Vector3d> points{};
+  // Bound of the distance between a point as stored here and as written in the file, scaled exactly
+  // by any number that rounds to `scale`; a scale of 1 is meant as such.
+  double point_error = 0.0;
+};
+
+// Reads the points of a PLY file (the vertices; text or binary, whatever else it has), or of a text
+// file with x, y and z at the beginning of each line, separated by blanks, commas or semicolons,
+// what follows a # being passed over: the files of the extensions xyz, txt, csv, asc and pts. A
+// file pts may begin with a line of the number of its points. Decimals are after a point. Numbers
+// are multiplied by `scale`.
+//
+// Throws Error, whose subject is the file and whose reason names the line or the point: for a file
+// that cannot be read, another extension, a PLY header that is malformed or has no x, y and z, a
+// file that is cut short, what is no number or beyond kMaxCoordinate, a line with commas beside
+// semicolons or beside blanks that separate (they may be those of decimals), a number of points
+// that is not theirs, a file without points, and a scale that is not from 1e-300 to 1e15.
+PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale = 1.0);
 
 }  // namespace spherule

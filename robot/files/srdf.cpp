@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/srdf.h"
-
 #include "base/rounding.h"
+#include "robot/files/robot_description.h"
 #include "robot/files/xml_file.h"
 
 #include <algorithm>

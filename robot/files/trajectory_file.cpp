@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "robot/files/format_text.h"
 #include "robot/model/joint_positions.h"
-#include "robot/model/shortest_motion.h"
+#include "robot/model/kinematics.h"
 
 #include <algorithm>
 #include <cmath>

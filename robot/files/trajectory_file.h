@@ -5,13 +5,13 @@
 //
 // @code{.cpp}
 // #include <spherule/robot/files/trajectory_file.h>
-// #include <spherule/base/files.h>
 // #include <cassert>
+// #include <fstream>
 //
 // spherule::RobotModel robot("base");
 // robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
 // const auto path = std::filesystem::temp_directory_path() / "spherule_example.csv";
-// spherule::write_file_atomically(path, "time,turn\n0,0.5\n1,0.75\n");
+// std::ofstream(path) << "time,turn\n0,0.5\n1,0.75\n";
 // const spherule::Trajectory trajectory = spherule::read_trajectory(path, robot);
 // assert(trajectory.size() == 2 && trajectory.configuration(1)[0] == 0.75);
 // @endcode
@@ -62,13 +62,10 @@ inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot,
                            AngleUnit angles = AngleUnit::kRadians);
 
-}  // namespace spherule
-
 // What a person should know of a trajectory that is well formed: what it leaves open, or what may
 // be meant otherwise.
 //
 // @code{.cpp}
-//
 // spherule::RobotModel robot("base");
 // robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kRevolute,
 //                                .lower = -2.0, .upper = 2.0});
@@ -76,8 +73,6 @@ Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& 
 // assert(spherule::outside_limits(robot, trajectory).count == 2);
 // assert(spherule::guess_degrees(robot, trajectory).looks_so);
 // @endcode
-
-namespace spherule {
 
 // Configurations with a joint outside its limits. A straight motion between two configurations that
 // have none stays within the limits.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/urdf.h"
-
 #include "base/error.h"
 #include "base/files.h"
 #include "base/text.h"
+#include "robot/files/robot_description.h"
 #include "robot/files/urdf_files.h"
 #include "robot/files/xml_file.h"
 

@@ -17,8 +17,8 @@
 // assert(file.format == xrdf && file.spheres.links[0].spheres == spheres.links[0].spheres);
 // @endcode
 
-#include "robot/files/srdf.h"
-#include "robot/model/link_spheres.h"
+#include "robot/files/robot_description.h"
+#include "robot/model/robot_model.h"
 
 #include <cstddef>
 #include <filesystem>

@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "robot/files/format_text.h"
-#include "robot/files/srdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/files/urdf_files.h"
 #include "robot/files/xml_file.h"
 #include "robot/formats/sphere_documents.h"

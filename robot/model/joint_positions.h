@@ -3,19 +3,6 @@
 
 // The positions of the joints in a configuration, those that mimic others included, and which of
 // them are beyond their limits.
-//
-// @code{.cpp}
-// #include <spherule/robot/model/joint_positions.h>
-// #include <cassert>
-//
-// spherule::RobotModel robot("hand");
-// robot.add_link("left", "hand", {.name = "a", .type = spherule::JointType::kContinuous});
-// robot.add_link("right", "hand", {.name = "b", .type = spherule::JointType::kContinuous});
-// robot.mimic("b", "a", -1.0);
-// const spherule::JointPositions positions(robot);
-// spherule::JointPositions::Scratch scratch = positions.scratch_for(1);
-// assert(robot.variable_count() == 1 && positions.of(std::vector{0.5}, scratch)[1] == -0.5);
-// @endcode
 
 #include "robot/model/robot_model.h"
 
@@ -57,20 +44,7 @@ class JointPositions {
   std::vector<Joint> moving_{};
 };
 
-}  // namespace spherule
-
 // Which joint of a configuration is beyond its limits?
-//
-// @code{.cpp}
-//
-// spherule::RobotModel robot("base");
-// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kRevolute,
-//                                .lower = -1.0, .upper = 1.0});
-// assert(spherule::joint_outside_limits(robot, std::vector{0.5}) == nullptr);
-// assert(spherule::joint_outside_limits(robot, std::vector{1.5})->name == "turn");
-// @endcode
-
-namespace spherule {
 
 // Whether the position of a joint is limited: that of one that moves and is not continuous.
 inline bool has_limits(const Joint& joint) {

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "robot/model/joint_positions.h"
-#include "robot/model/shortest_motion.h"
+#include "robot/model/link_paths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ using Eigen::Vector3d;
 //   A point at distance `reach` is turned with the last link: (54 n + 8) u reach.
 // With L the sum of the steps' lengths (100 m for a prismatic motion), over n joints
 //     (54 n + 8) u reach + (54 n + 79) u L + 2 n u (D + L).
-//   mimics: a position that errs by e (shortest_motion.h) turns what lies beyond the joint, at most
+//   mimics: a position that errs by e (mimic_error()) turns what lies beyond the joint, at most
 //     reach + L from it, by e, or shifts it by e.
 double chain_bound(double joints, double length, double reach, double root_distance) {
   return kUnitRoundoff * ((60.0 * joints + 10.0) * reach + (60.0 * joints + 85.0) * length +

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "robot/model/kinematics.h"
-#include "robot/model/shortest_motion.h"
 
 #include <algorithm>
 #include <cmath>

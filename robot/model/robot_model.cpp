@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "collide/kernels/plan_trees.h"
-#include "robot/model/link_spheres.h"
-#include "spheretree/build.h"
 #include "spheretree/sphere_tree.h"
 
 #include <cmath>

@@ -5,7 +5,7 @@
 //
 // @code{.cpp}
 // #include <spherule/robot/model/robot_model.h>
-// #include <spherule/spheretree/build.h>
+// #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
 //
 // spherule::RobotModel robot("base");
@@ -20,6 +20,7 @@
 
 #include "collide/solids/primitive.h"
 #include "geometry/pose.h"
+#include "geometry/sphere.h"
 #include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>
@@ -155,19 +156,14 @@ class RobotModel {
   std::shared_ptr<internal::CheckCache> check_cache_;
 };
 
-}  // namespace spherule
-
 // A robot as a file describes it: its mechanism, and the shapes of its links.
 //
 // @code{.cpp}
-//
 // spherule::RobotDescription robot{.name = "post", .model = spherule::RobotModel("base")};
 // const spherule::Primitive box = spherule::Box{.size = {0.1, 0.1, 1.0}};
 // robot.links = {{.name = "base", .collision = {{.name = "post", .geometry = box}}}};
 // assert(robot.links.size() == robot.model.links().size());
 // @endcode
-
-namespace spherule {
 
 // A mesh in a file. Times `scale`, coordinate by coordinate, it is in metres: of formats that state
 // a unit (DAE, 3MF, glTF) what is scaled is in metres before, of others the file's own numbers are.
@@ -197,5 +193,24 @@ struct RobotDescription {
   RobotModel model;
   std::vector<LinkDescription> links{};  // in the order of model.links()
 };
+
+// A robot with spheres on its links.
+//
+// @code{.cpp}
+// const std::vector<spherule::LinkSpheres> spheres{
+//     {.link = "base", .spheres = {{{0, 0, 0}, 0.1}}}};
+// const auto robot = spherule::with_spheres(spherule::RobotModel("base"), spheres);
+// assert(robot.links()[0].trees[0]->spheres()[0].radius == 0.1);
+// @endcode
+
+// The spheres of one link, in the frame of the link, in metres.
+struct LinkSpheres {
+  std::string link;
+  std::vector<Sphere> spheres;
+};
+
+// The robot with a sphere tree on every link that has spheres: what RobotScene takes. Throws Error
+// for spheres of a link that the robot does not have, or that build_tree() refuses.
+RobotModel with_spheres(RobotModel robot, std::span<const LinkSpheres> spheres);
 
 }  // namespace spherule

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "robot/model/link_paths.h"
-#include "robot/pairs/link_pairs.h"
-#include "robot/pairs/proof_scope.h"
 
 #include <algorithm>
 #include <array>
@@ -36,15 +34,13 @@ std::string_view name_of(AllowedReason reason) {
   return kNames[static_cast<std::size_t>(reason)];
 }
 
-AllowedCollisions::AllowedCollisions(const RobotModel& robot)
-    : mechanism_(mechanism_fingerprint(robot)), limits_(internal::position_limits(robot)) {
+AllowedCollisions::AllowedCollisions(const RobotModel& robot) {
   if (robot.links().size() > kMaxLinks) {
     throw Error("robot", "it has more than " + std::to_string(kMaxLinks) +
                              " links, too many for a table of their pairs");
   }
   for (const Link& link : robot.links()) names_.push_back(link.name);
   const int count = static_cast<int>(names_.size());
-  bits_.resize((names_.size() * names_.size() + 63) / 64);
   reasons_.resize(names_.size() * names_.size(), AllowedReason::kTested);
   const internal::LinkRelations relations(robot);
   const auto has_spheres = [&](int link) {
@@ -68,21 +64,17 @@ int AllowedCollisions::link(std::string_view name) const {
 }
 
 void AllowedCollisions::set(int first, int second, AllowedReason reason) {
-  for (const std::size_t i : {index(first, second), index(second, first)}) {
-    const std::uint64_t bit = std::uint64_t{1} << (i % 64);
-    bits_[i / 64] = reason == AllowedReason::kTested ? bits_[i / 64] & ~bit : bits_[i / 64] | bit;
-    reasons_[i] = reason;
-  }
+  reasons_[index(first, second)] = reason;
+  reasons_[index(second, first)] = reason;
 }
 
 void AllowedCollisions::allow(std::string_view first, std::string_view second) {
   allow(link(first), link(second), AllowedReason::kGiven);
 }
 
-void AllowedCollisions::allow(std::span<const std::pair<std::string, std::string>> pairs) {
-  std::vector<std::pair<int, int>> found;
-  for (const auto& [first, second] : pairs) found.emplace_back(link(first), link(second));
-  for (const auto& [first, second] : found) allow(first, second, AllowedReason::kGiven);
+void AllowedCollisions::allow(std::span<const DisabledPair> pairs) {
+  for (const DisabledPair& pair : pairs) (void)(link(pair.link_a), link(pair.link_b));
+  for (const DisabledPair& pair : pairs) allow(pair.link_a, pair.link_b);
 }
 
 void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
@@ -92,19 +84,10 @@ void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
                                           std::to_string(second) + " is not there: the robot has " +
                                           std::to_string(count) + " links");
   }
-  if (reason == AllowedReason::kTested || reason == AllowedReason::kFreeInBoxes) {
-    throw Error("allowed collisions", "a pair that is tested is not allowed");
+  if (reason == AllowedReason::kTested || reason >= AllowedReason::kProvedNever) {
+    throw Error("allowed collisions", "a pair that is tested or proved is not allowed");
   }
   if (!allows(first, second)) set(first, second, reason);
-}
-
-void AllowedCollisions::allow(const LinkPairs& pairs) {
-  internal::require_proofs_of(pairs, mechanism_, names_.size(), limits_.size());
-  internal::require_never_within(pairs, limits_);
-  for (const LinkPair& pair : pairs.pairs()) {
-    if (pair.verdict != PairVerdict::kNever) continue;
-    allow(pair.first, pair.second, AllowedReason::kProvedNever);
-  }
 }
 
 void AllowedCollisions::allow_all() {
@@ -133,18 +116,6 @@ void AllowedCollisions::require_robot(const RobotModel& robot) const {
                   [](const std::string& name, const Link& link) { return name == link.name; })) {
     throw Error("allowed collisions", "they are those of a robot with other links");
   }
-  if (std::find(reasons_.begin(), reasons_.end(), AllowedReason::kProvedNever) == reasons_.end()) {
-    return;
-  }
-  const std::vector<std::pair<double, double>> limits = internal::position_limits(robot);
-  if (mechanism_fingerprint(robot) != mechanism_ ||
-      !std::equal(limits.begin(), limits.end(), limits_.begin(), limits_.end(),
-                  [](const auto& queried, const auto& proved) {
-                    return proved.first <= queried.first && queried.second <= proved.second;
-                  })) {
-    throw Error("allowed collisions",
-                "pairs in them are proved for a robot with other joints or tighter limits");
-  }
 }
 
 std::vector<AllowedCollisions::Pair> AllowedCollisions::pairs() const {
@@ -156,30 +127,6 @@ std::vector<AllowedCollisions::Pair> AllowedCollisions::pairs() const {
     }
   }
   return result;
-}
-
-std::vector<DisabledPair> pairs_proved_never(const RobotModel& robot, const LinkPairs& proofs) {
-  internal::require_never_holds(proofs, robot);
-  std::vector<DisabledPair> result;
-  for (const LinkPair& pair : proofs.pairs()) {
-    if (pair.verdict != PairVerdict::kNever) continue;
-    result.push_back({robot.links()[static_cast<std::size_t>(pair.first)].name,
-                      robot.links()[static_cast<std::size_t>(pair.second)].name,
-                      std::string(kProvedNeverReason)});
-  }
-  return result;
-}
-
-void add_missing_pairs(std::span<const DisabledPair> pairs, const RobotModel& robot,
-                       std::vector<DisabledPair>& known) {
-  for (const DisabledPair& pair : pairs) {
-    if (robot.find_link(pair.link_a) < 0 || robot.find_link(pair.link_b) < 0) continue;
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const DisabledPair& other) {
-      return (other.link_a == pair.link_a && other.link_b == pair.link_b) ||
-             (other.link_a == pair.link_b && other.link_b == pair.link_a);
-    });
-    if (!is_known) known.push_back(pair);
-  }
 }
 
 }  // namespace spherule

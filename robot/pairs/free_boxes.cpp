@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/pairs/free_boxes.h"
-
 #include "base/error.h"
+#include "robot/pairs/link_pairs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -57,7 +57,7 @@
 
 #include "base/rounding.h"
 #include "robot/model/robot_model.h"
-#include "robot/pairs/free_boxes.h"
+#include "robot/pairs/link_pairs.h"
 #include "robot/pairs/link_pieces.h"
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "robot/model/robot_model.h"
-#include "robot/pairs/free_boxes.h"
+#include "robot/pairs/link_pairs.h"
 #include "robot/pairs/link_pieces.h"
 
 #include <cstddef>

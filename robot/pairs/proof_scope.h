@@ -4,30 +4,21 @@
 #include "robot/model/robot_model.h"
 #include "robot/pairs/link_pairs.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
+#include <string>
+#include <string_view>
 
 namespace spherule::internal {
 
-// The lower and the upper limit of a variable of a robot; -pi and pi of continuous joints.
-using PositionLimits = std::pair<double, double>;
-
-// Of each variable.
-std::vector<PositionLimits> position_limits(const RobotModel& robot);
-
-// Throws Error unless the proofs are of a mechanism with that fingerprint and so many links and
-// variables, and of a tool on `tool_link`, or of the links themselves (-1).
-void require_proofs_of(const LinkPairs& pairs, std::uint64_t mechanism, std::size_t links,
-                       std::size_t variables, int tool_link = -1);
+// Throws Error unless the proofs are of this robot's links and joints, and of a tool on
+// `tool_link`, or of the links themselves (-1).
 void require_proofs_of(const LinkPairs& pairs, const RobotModel& robot, int tool_link = -1);
-
-// Throws Error unless each two links that are proved never to touch are so wherever these limits
-// let the joints be.
-void require_never_within(const LinkPairs& pairs, std::span<const PositionLimits> limits);
-// Both, of a robot's links and limits.
+// Throws Error, too, unless each two links that are proved never to touch are so wherever the
+// robot's limits let the joints be.
 void require_never_holds(const LinkPairs& pairs, const RobotModel& robot);
+
+// The content of a file of proofs apart from the file system, for tests; `name` becomes the subject
+// of an Error.
+std::string encode_link_pairs(const LinkPairs& pairs);
+LinkPairs decode_link_pairs(std::string_view bytes, const std::string& name);
 
 }  // namespace spherule::internal

@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Is what an SRDF states about pairs of links true?
-//
-// @code{.cpp}
-// #include <spherule/robot/pairs/srdf_judgement.h>
-// #include <cassert>
-//
-// spherule::RobotModel robot("base");
-// robot.add_link("arm", "base", {.name = "turn", .type = spherule::JointType::kContinuous});
-// spherule::SemanticDescription semantics;  // as read_srdf() reads it
-// semantics.disabled_pairs = {{.link_a = "base", .link_b = "hand", .reason = "Never"}};
-// const auto judgement =
-//     spherule::judge_srdf(robot, semantics, spherule::prove_link_pairs(robot, {}));
-// assert(judgement.pairs[0].verdict == spherule::DisabledVerdict::kOtherRobot);  // no hand
-// @endcode
+// Is what an SRDF states about pairs of links true, and what could be added to it?
 
-#include "robot/files/srdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/pairs/link_pairs.h"
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -67,5 +55,16 @@ struct SrdfJudgement {
 // Throws Error for proofs of another robot, of tighter limits, or of an attached tool.
 SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& semantics,
                          const LinkPairs& proofs);
+
+// The reason of pairs that are proved never to touch, in lists of ignored pairs.
+inline constexpr std::string_view kProvedNeverReason = "Never (proved within the limits)";
+
+// The pairs of links that are proved never to touch, by name, for lists of ignored pairs. Throws
+// Error for proofs of another robot, of tighter limits, or of an attached tool.
+std::vector<DisabledPair> pairs_proved_never(const RobotModel& robot, const LinkPairs& proofs);
+
+// Appends those of the pairs that are about links of the robot and not known yet, in either order.
+void add_missing_pairs(std::span<const DisabledPair> pairs, const RobotModel& robot,
+                       std::vector<DisabledPair>& known);
 
 }  // namespace spherule

@@ -3,10 +3,6 @@
 
 #include "geometry/mesh_distance.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/cover.h"
-#include "simplifier/types/external_spheres.h"
-#include "simplifier/types/levels.h"
 #include "simplifier/types/simplification.h"
 
 #include <cstddef>

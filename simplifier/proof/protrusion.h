@@ -7,8 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "simplifier/proof/proof.h"
 #include "simplifier/solid/clearance.h"
-#include "simplifier/types/certificate.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 #include "simplifier/types/zones.h"
 
 #include <optional>

@@ -5,7 +5,7 @@
 #include "base/rounding.h"
 #include "geometry/sphere.h"
 #include "simplifier/solid/nearest_cells.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 
 #include <Eigen/Geometry>
 

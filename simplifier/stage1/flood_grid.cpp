@@ -4,7 +4,7 @@
 #include "base/rounding.h"
 #include "base/threads.h"
 #include "simplifier/stage1/flood_refinement.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 
 #include <algorithm>
 #include <array>

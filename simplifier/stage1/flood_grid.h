@@ -7,7 +7,7 @@
 #include "geometry/mesh_distance.h"
 #include "geometry/sphere.h"
 #include "simplifier/solid/zone_index.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 #include "simplifier/types/zones.h"
 
 #include <Eigen/Core>

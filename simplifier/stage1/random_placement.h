@@ -5,7 +5,7 @@
 #include "geometry/sphere.h"
 #include "simplifier/solid/sphere_hierarchy.h"
 #include "simplifier/stage1/flood_grid.h"
-#include "simplifier/types/external_spheres.h"
+#include "simplifier/types/simplification.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -7,7 +7,7 @@
 #include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_fitter.h"
-#include "simplifier/types/cover.h"
+#include "simplifier/types/simplification.h"
 
 #include <Eigen/Geometry>
 

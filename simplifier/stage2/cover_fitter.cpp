@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "base/rounding.h"
 #include "base/threads.h"
-#include "geometry/enclosing_sphere.h"
+#include "geometry/sphere.h"
 #include "simplifier/solid/cells.h"
 #include "simplifier/stage2/bound/cover_bound.h"
 #include "simplifier/stage2/cover_moves.h"

@@ -8,8 +8,8 @@
 #include "simplifier/stage2/cover_problem.h"
 #include "simplifier/stage2/search/cover_search.h"
 #include "simplifier/stage2/solid_cells.h"
-#include "simplifier/types/cover.h"
-#include "spheretree/level_tree.h"
+#include "simplifier/types/simplification.h"
+#include "spheretree/sphere_tree.h"
 
 #include <Eigen/Core>
 
@@ -141,7 +141,7 @@ class CoverFitter {
 };
 
 // Few spheres that each protrude from S by at most E and together enclose every one of some finer
-// spheres whole (simplifier/types/levels.h). Unlike a cover of S this is a set cover and no more,
+// spheres whole (CoverLevel). Unlike a cover of S this is a set cover and no more,
 // so what the search finds needs no proof but that of the enclosures.
 class LevelFitter {
  public:

@@ -4,7 +4,7 @@
 #include "geometry/sphere.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/stage2/cover_problem.h"
-#include "simplifier/types/cover.h"
+#include "simplifier/types/simplification.h"
 
 #include <Eigen/Core>
 
@@ -39,11 +39,7 @@ std::vector<Candidate> perturbed(const Clearance& clearance, const CoverProblem&
 Candidate shift(const Clearance& clearance, const CoverProblem& problem, const Candidate& start,
                 std::span<const std::uint32_t> rows);
 
-}  // namespace spherule::internal
-
 // What every way to cover S refuses, with an Error that names it.
-
-namespace spherule::internal {
 
 // An E that is not positive and finite.
 void check_max_error(double max_error);

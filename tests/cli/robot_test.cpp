@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
-#include "spheretree/check.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_file.h"
 #include "tests/cli/command_test_support.h"
 #include "tests/cli/robot_fixtures.h"

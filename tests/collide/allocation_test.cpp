@@ -7,7 +7,7 @@
 #include "collide/meshes/mesh_tree.h"
 #include "collide/pair_cache.h"
 #include "collide/sweep.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/counting_new.h"
 #include "tests/support/random_scene.h"
 

@@ -3,7 +3,7 @@
 // are in contact up to rounding, where the last bit of the canonical test decides.
 #include "collide/collide.h"
 #include "collide/meshes/mesh_tree.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/hash.h"
 #include "tests/support/random_scene.h"
 

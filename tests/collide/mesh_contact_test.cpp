@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "collide/contact.h"
-#include "geometry/enclosing_sphere.h"
-#include "spheretree/build.h"
+#include "geometry/sphere.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"
 #include "tests/support/random_scene.h"

@@ -7,7 +7,7 @@
 #include "collide/meshes/mesh_tree.h"
 #include "collide/meshes/triangle_leaves.h"
 #include "collide/search/relative_pose.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"
 #include "tests/support/random_scene.h"

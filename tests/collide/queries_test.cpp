@@ -7,7 +7,7 @@
 #include "collide/meshes/solid_mesh.h"
 #include "collide/search/relative_pose.h"
 #include "collide/solids/primitive.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"

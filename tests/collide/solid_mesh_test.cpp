@@ -8,7 +8,7 @@
 #include "collide/search/relative_pose.h"
 #include "collide/solids/solid_within.h"
 #include "geometry/ray.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"
 #include "tests/support/mesh_facts.h"

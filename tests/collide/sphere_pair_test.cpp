@@ -3,7 +3,7 @@
 #include "collide/search/box_gap.h"
 #include "collide/search/nearest_first.h"
 #include "collide/search/relative_pose.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/spheres.h"
 #include "tests/support/random.h"

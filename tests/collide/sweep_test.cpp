@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "collide/collide.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/soak/scale.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/poses.h"

@@ -4,7 +4,7 @@
 #include "collide/meshes/mesh_contact.h"
 #include "io/mesh_io.h"
 #include "simplifier/simplify.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/fcl_solid.h"
 #include "tests/support/models.h"

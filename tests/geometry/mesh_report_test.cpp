@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/mesh_report.h"
-
 #include "base/error.h"
 #include "geometry/self_intersection.h"
 #include "geometry/triangle_mesh.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/exact/spheres.h"
 
-#include "geometry/enclosing_sphere.h"
 #include "geometry/sphere.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/trees.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/mesh_io.h"
 #include "io/placement.h"
 #include "tests/io/read_files.h"

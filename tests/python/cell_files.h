@@ -3,7 +3,7 @@
 
 #include "robot/check/robot_checker.h"
 #include "robot/check/scene_setup.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
 
 #include <filesystem>

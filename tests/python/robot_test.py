@@ -197,8 +197,6 @@ def test_link_pairs(description, robot, tmp_path):
     if never:
         assert scene.reason(never[0].first, never[0].second) in ("proved never", "adjacent", "rigid")
     scene.set_link_pairs(None)
-    allowed = spherule.AllowedCollisions(robot)
-    allowed.allow_proved(pairs)
 
 
 def test_confirmed_on_triangles(cube, fit):

@@ -9,7 +9,6 @@
 #include "simplifier/concave_edges.h"
 #include "simplifier/option_record.h"
 #include "simplifier/simplify.h"
-#include "simplifier/zone_file.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"

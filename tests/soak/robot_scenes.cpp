@@ -5,7 +5,7 @@
 #include "collide/collide.h"
 #include "collide/meshes/solid_mesh.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/exact/spheres.h"
 
 #include <algorithm>

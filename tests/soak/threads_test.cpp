@@ -5,7 +5,7 @@
 #include "collide/pair_cache.h"
 #include "robot/check/robot_scene.h"
 #include "simplifier/simplify.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/soak/robot_scenes.h"
 #include "tests/soak/scale.h"
 #include "tests/support/random_scene.h"

@@ -2,7 +2,7 @@
 #include "spheretree/tree_file.h"
 
 #include "base/crc64.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "spheretree/tree_bytes.h"
 #include "tests/support/exact/trees.h"
 #include "tests/support/hash.h"

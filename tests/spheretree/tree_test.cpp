@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/error.h"
-#include "geometry/enclosing_sphere.h"
-#include "spheretree/build.h"
-#include "spheretree/check.h"
-#include "spheretree/level_tree.h"
+#include "geometry/sphere.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/spheres.h"
 #include "tests/support/exact/trees.h"

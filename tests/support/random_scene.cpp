@@ -2,7 +2,7 @@
 #include "tests/support/random_scene.h"
 
 #include "collide/meshes/mesh_tree.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <cmath>
 #include <limits>

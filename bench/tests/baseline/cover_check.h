@@ -2,7 +2,7 @@
 #pragma once
 
 #include "geometry/mesh_distance.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
 #include "tests/simplifier/judge.h"

@@ -6,7 +6,7 @@
 #include "bench/tests/baseline/cover_check.h"
 #include "geometry/mesh_distance.h"
 #include "simplifier/simplify.h"
-#include "spheretree/check.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -4,7 +4,7 @@
 #include "bench/baseline/medial_spheres.h"
 #include "bench/baseline/sphere_methods.h"
 #include "bench/tests/baseline/cover_check.h"
-#include "spheretree/check.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/simplifier/judge.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

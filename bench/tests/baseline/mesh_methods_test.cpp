@@ -4,7 +4,6 @@
 #include "bench/baseline/mesh_methods.h"
 
 #include "base/error.h"
-#include "geometry/mesh_report.h"
 #include "geometry/triangle_mesh.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"

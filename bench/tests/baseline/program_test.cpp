@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What `spherule_baseline` writes: meshes that are read back, and spheres whose stored certificate
 // is the one that certify() comes to.
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/mesh_io.h"
 #include "io/sphere_file.h"
 #include "simplifier/simplify.h"

@@ -7,7 +7,7 @@
 #include "simplifier/solid/cells.h"
 #include "simplifier/solid/clearance.h"
 #include "simplifier/solid/sphere_hierarchy.h"
-#include "simplifier/types/cover.h"
+#include "simplifier/types/simplification.h"
 
 #include <Eigen/Core>
 
@@ -65,11 +65,7 @@ class UncoveredSearch {
   std::uint64_t made_ = 0;
 };
 
-}  // namespace spherule::internal
-
 // Spheres inside of S that leave an error, by which they are then inflated so that they cover S.
-
-namespace spherule::internal {
 
 // Shares of E. Spheres that leave no error above kLoopLimit can be inflated within E: the rest is
 // kept for the margin, which lets every piece of a subdivision down to that size lie inside a

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/adapters/fcl/models.h"
 
-#include "adapters/fcl/conversions.h"
+#include "adapters/fcl/collide.h"
 #include "tests/support/effort.h"
 #include "tests/support/shapes.h"
 

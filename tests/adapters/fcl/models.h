@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "adapters/fcl/sphere_model.h"
+#include "adapters/fcl/collide.h"
 #include "geometry/triangle_mesh.h"
 #include "tests/support/fcl_solid.h"
 #include "tests/support/random.h"

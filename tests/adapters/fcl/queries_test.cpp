@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "adapters/fcl/broadphase_callback.h"
+#include "adapters/fcl/collide.h"
 #include "base/error.h"
 #include "collide/collide.h"
 #include "collide/motion/motion.h"
 #include "geometry/point_triangle.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/adapters/fcl/models.h"
 #include "tests/support/effort.h"
 #include "tests/support/fcl_solid.h"

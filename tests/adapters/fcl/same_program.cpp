@@ -4,7 +4,7 @@
 #include "tests/adapters/fcl/same_program.h"
 
 #ifdef PROGRAM_WITH_SPHERULE
-#include "adapters/fcl/broadphase_callback.h"
+#include "adapters/fcl/collide.h"
 namespace api = spherule::fcl_api;
 #define PROGRAM(name) name##_spherule
 #else

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The validity of states and motions for OMPL, against trigonometry, and a planner that uses them.
-#include "adapters/ompl/motion_validator.h"
-#include "adapters/ompl/state_validity_checker.h"
+#include "adapters/ompl/validators.h"
 #include "base/error.h"
 #include "robot/check/robot_scene.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
 

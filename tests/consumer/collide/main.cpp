@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
-#include <spherule/collide/collide.h>
-#include <spherule/spheretree/build.h>
+#include <spherule/collide.h>
 #include <vector>
 
 // Two rows of ten spheres of radius 1, side by side: apart, then moved into each other.

@@ -2,7 +2,7 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 
 #include <iostream>
-#include <spherule/adapters/fcl/broadphase_callback.h>
+#include <spherule/adapters/fcl/collide.h>
 
 namespace api = spherule::fcl_api;
 

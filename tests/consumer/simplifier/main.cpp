@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
-#include <spherule/simplifier/simplify.h>
+#include <spherule/simplifier.h>
 
 // Covers a cube of side 100 and requires the proof.
 int main() {

@@ -3,7 +3,7 @@
 
 #include "collide/collide.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/robots.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"

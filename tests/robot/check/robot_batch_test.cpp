@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/robots.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which queries of a robot's checker allocate.
 
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/robots.h"
 #include "tests/support/counting_new.h"

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "collide/meshes/solid_mesh.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/check/checked_scene.h"
 #include "tests/robot/check/scene_oracle.h"

@@ -5,6 +5,7 @@
 #include "robot/check/scene_setup.h"
 #include "robot/model/kinematics.h"
 #include "robot/pairs/allowed_collisions.h"
+#include "robot/pairs/srdf_judgement.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/check/checked_scene.h"

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "robot/check/robot_scene.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/robots.h"
@@ -321,14 +321,6 @@ TEST_F(TwoBarScene, ContactsAreToldBeforeWhatIsProvedFree) {
     ASSERT_EQ(told.size(), most);
     for (std::size_t i = 0; i < most; ++i) EXPECT_EQ(told[i].is_proved_free, i == 2);
   }
-}
-
-TEST_F(TwoBarScene, WhatNeverTouchesMayBeAllowed) {
-  AllowedCollisions allowed(robot_.model);
-  allowed.allow(*pairs_);
-  EXPECT_TRUE(allowed.allows("first", "second"));
-  EXPECT_EQ(allowed.reason(1, 2), AllowedReason::kProvedNever);
-  EXPECT_THROW(AllowedCollisions(RobotModel("alone")).allow(*pairs_), Error);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "collide/meshes/solid_mesh.h"
 #include "collide/point_cloud.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/robots.h"
 #include "tests/support/random_scene.h"

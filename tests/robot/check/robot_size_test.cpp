@@ -3,7 +3,7 @@
 // pairs.
 
 #include "robot/check/robot_scene.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/check/checked.h"
 #include "tests/robot/refusals.h"
 #include "tests/robot/robots.h"

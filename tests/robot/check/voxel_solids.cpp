@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/robot/check/voxel_solids.h"
 
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/solid_oracle.h"
 
 #include <algorithm>

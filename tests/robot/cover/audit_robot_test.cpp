@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "robot/cover/link_parts.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
 #include "tests/robot/refusals.h"
 #include "tests/support/effort.h"

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "robot/cover/alarm_sample.h"
 #include "robot/model/kinematics.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"

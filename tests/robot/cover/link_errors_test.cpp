@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "robot/cover/false_alarms.h"
 #include "robot/cover/goal_cover.h"
-#include "robot/model/link_spheres.h"
-#include "spheretree/build.h"
+#include "robot/model/robot_model.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
@@ -277,7 +277,7 @@ TEST(CoveredBodies, AreGrownByTheirOwnPadding) {
 class GoalOfBlocks : public testing::Test {
  protected:
   GoalCover cover(const RobotCoverOptions& options, double goal,
-                  const std::vector<std::pair<std::string, std::string>>& disabled = {}) const {
+                  const std::vector<DisabledPair>& disabled = {}) const {
     return cover_robot_to_goal(
         robot_, covered_bodies(robot_, options), disabled, nullptr, options,
         {.goal = goal, .coarsest_error = 0.1, .finest_error = 0.02, .sample = {.postures = 4000}});
@@ -312,12 +312,12 @@ TEST_F(GoalOfBlocks, HandsOutTheCoversThatWereVerified) {
 TEST_F(GoalOfBlocks, DisabledPairsAndFixedLinksCount) {
   RobotCoverOptions options{.effort = 0};
   options.links["left"].max_error = 0.05;
-  const GoalCover result = cover(options, 0.1, {{"left", "right"}});
+  const GoalCover result = cover(options, 0.1, {{"left", "right", ""}});
   EXPECT_TRUE(result.choice.is_reached);
   EXPECT_EQ(result.choice.verified.refused[0], 0U);
   EXPECT_EQ(result.choice.links[0].max_error, 0.05);
   EXPECT_EQ(result.choice.links[1].max_error, 0.1);
-  EXPECT_THROW(cover(options, 0.1, {{"left", "nobody"}}), Error);
+  EXPECT_THROW(cover(options, 0.1, {{"left", "nobody", ""}}), Error);
 }
 
 }  // namespace

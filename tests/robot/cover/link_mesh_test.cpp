@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/cover/link_mesh.h"
-
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/mesh_io.h"
 #include "robot/cover/audit_robot.h"
 #include "robot/cover/link_parts.h"
 #include "robot/cover/robot_spheres.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "tests/robot/refusals.h"
 #include "tests/robot/solid_oracle.h"
 #include "tests/support/effort.h"

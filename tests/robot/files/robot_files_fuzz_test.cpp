@@ -2,8 +2,7 @@
 // Files of which some bytes are wrong: they are read, or refused with an Error, and nothing else.
 
 #include "base/error.h"
-#include "robot/files/srdf.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "tests/robot/files/random_urdf.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"

@@ -2,7 +2,6 @@
 #include "robot/files/scene_file.h"
 
 #include "base/error.h"
-#include "robot/files/point_cloud_file.h"
 #include "tests/robot/refusals.h"
 #include "tests/support/temp_dir.h"
 

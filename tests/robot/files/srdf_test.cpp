@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What an SRDF file says, and what is no SRDF file.
 
-#include "robot/files/srdf.h"
-
 #include "base/error.h"
+#include "robot/files/robot_description.h"
 #include "tests/robot/refusals.h"
 #include "tests/support/temp_dir.h"
 

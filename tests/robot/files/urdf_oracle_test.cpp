@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/files.h"
-#include "robot/files/urdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/model/kinematics.h"
 #include "tests/robot/files/random_urdf.h"
 #include "tests/robot/robots.h"

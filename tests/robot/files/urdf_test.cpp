@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a URDF file says, and what is no URDF file.
 
-#include "robot/files/urdf.h"
-
 #include "base/error.h"
+#include "robot/files/robot_description.h"
 #include "tests/robot/refusals.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"

@@ -2,7 +2,7 @@
 // Existing files that get other spheres and the pairs that they do not ignore yet: everything else
 // stays as data, in its order. The texts are styled as the published files are.
 #include "base/files.h"
-#include "robot/files/srdf.h"
+#include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
 #include "tests/robot/refusals.h"
 #include "tests/support/temp_dir.h"

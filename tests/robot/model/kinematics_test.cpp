@@ -2,10 +2,8 @@
 #include "robot/model/kinematics.h"
 
 #include "base/error.h"
-#include "robot/check/robot_collision.h"
 #include "robot/model/link_paths.h"
-#include "robot/model/shortest_motion.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 #include "tests/robot/refusals.h"
 #include "tests/robot/robots.h"
 #include "tests/support/effort.h"
@@ -138,31 +136,6 @@ TEST(Kinematics, RefusesABadConfiguration) {
   robot.add_link("slide", "arm", {.name = "rail", .type = JointType::kPrismatic});
   EXPECT_NO_THROW(run({1.0, 1e15}));
   EXPECT_THROW(run({1.0, 1.1e15}), Error);
-}
-
-TEST(RobotCollides, IsTheCollisionOfAnyTreeOnAnyLink) {
-  Random random(5);
-  int hits = 0;
-  for (int i = 0; i < 60; ++i) {
-    RobotModel robot = random_robot(random, 5, true);
-    std::vector<std::pair<std::size_t, std::shared_ptr<const SphereTree>>> trees;
-    for (int k = 0; k < 4; ++k) {
-      const auto link = static_cast<std::size_t>(random.whole(0, 5));
-      trees.emplace_back(link, one_sphere_tree(random.point(0.2), 0.3));
-      robot.attach(robot.links()[link].name, trees.back().second);
-    }
-    const SphereTree obstacle = build_tree(std::vector<Sphere>{{random.point(1.0), 0.5}});
-    const Pose world_from_obstacle = random.pose(1.0);
-    const std::vector<Pose> poses = poses_of(robot, random_configuration(random, robot, 1.0));
-    bool expected = false;
-    for (const auto& [link, tree] : trees) {
-      expected = expected || collides(*tree, poses[link], obstacle, world_from_obstacle);
-    }
-    ASSERT_EQ(robot_collides(robot, poses, obstacle, world_from_obstacle), expected);
-    hits += expected;
-  }
-  EXPECT_GT(hits, 5);
-  EXPECT_LT(hits, 55);
 }
 
 }  // namespace

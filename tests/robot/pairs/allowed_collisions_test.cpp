@@ -38,7 +38,7 @@ RobotModel arm() {
 
 TEST(AllowedCollisions, GivenByName) {
   AllowedCollisions allowed(arm());
-  const std::vector<std::pair<std::string, std::string>> pairs = {{"plate", "a"}, {"a", "base"}};
+  const std::vector<DisabledPair> pairs = {{"plate", "a", ""}, {"a", "base", "Never"}};
   allowed.allow(pairs);
   EXPECT_TRUE(allowed.allows("plate", "a"));
   EXPECT_EQ(allowed.reason(1, 2), AllowedReason::kGiven);
@@ -49,8 +49,7 @@ TEST(AllowedCollisions, GivenByName) {
   EXPECT_FALSE(allowed.allows(0, 2));
 
   const AllowedCollisions before = allowed;
-  const std::vector<std::pair<std::string, std::string>> half_known = {{"plate", "finger"},
-                                                                       {"a", "nose"}};
+  const std::vector<DisabledPair> half_known = {{"plate", "finger", ""}, {"a", "nose", ""}};
   EXPECT_THROW(allowed.allow(half_known), Error);
   EXPECT_FALSE(allowed.allows("plate", "finger")) << "nothing is taken of a list that is refused";
   EXPECT_EQ(allowed.pairs().size(), before.pairs().size());
@@ -61,6 +60,7 @@ TEST(AllowedCollisions, GivenByName) {
   EXPECT_THROW(allowed.allow(0, 6, AllowedReason::kNever), Error);
   EXPECT_THROW(allowed.allow(-1, 0, AllowedReason::kNever), Error);
   EXPECT_THROW(allowed.allow(1, 2, AllowedReason::kTested), Error);
+  EXPECT_THROW(allowed.allow(1, 2, AllowedReason::kProvedNever), Error);
 }
 
 // Bits beyond the first word, and no pair is another's.
@@ -220,9 +220,6 @@ TEST_F(SrdfJudged, ProofsThatDoNotHoldForTheLinksAreRefused) {
   const auto expect_refused = [&](const LinkPairs& proofs) {
     EXPECT_THROW(judge_srdf(robot_.model, {}, proofs), Error);
     EXPECT_THROW(pairs_proved_never(robot_.model, proofs), Error);
-    AllowedCollisions allowed(robot_.model);
-    EXPECT_THROW(allowed.allow(proofs), Error);
-    EXPECT_FALSE(allowed.allows("cart", "shelf"));
   };
   BoxRobot tool{robot_.model};
   tool.add_boxes(robot_.model.find_link("cart"),
@@ -233,15 +230,6 @@ TEST_F(SrdfJudged, ProofsThatDoNotHoldForTheLinksAreRefused) {
   BoxRobot other = rail();
   other.model.mimic("pull", "lift");
   expect_refused(prove_link_pairs(other.model, other.bodies));
-
-  AllowedCollisions allowed(robot_.model);
-  allowed.allow(proofs_);
-  EXPECT_EQ(allowed.reason(robot_.model.find_link("cart"), robot_.model.find_link("shelf")),
-            AllowedReason::kProvedNever);
-  EXPECT_NO_THROW(RobotScene(robot_.model).set_allowed_collisions(allowed));
-  EXPECT_NO_THROW(RobotScene(shorter.model).set_allowed_collisions(allowed));
-  EXPECT_THROW(RobotScene(rail(1.1).model).set_allowed_collisions(allowed), Error);
-  EXPECT_THROW(RobotScene(other.model).set_allowed_collisions(allowed), Error);
 }
 
 TEST_F(SrdfJudged, WhatIsProvedAndMissingCouldBeAdded) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot/pairs/free_boxes.h"
-
 #include "robot/check/plan_source.h"
+#include "robot/pairs/link_pairs.h"
 #include "robot/pairs/link_pieces.h"
 #include "tests/robot/check/checked.h"
 #include "tests/support/effort.h"

@@ -2,6 +2,7 @@
 #include "base/crc64.h"
 #include "base/error.h"
 #include "robot/pairs/link_pairs.h"
+#include "robot/pairs/proof_scope.h"
 #include "tests/robot/box_robots.h"
 #include "tests/robot/refusals.h"
 #include "tests/robot/robots.h"

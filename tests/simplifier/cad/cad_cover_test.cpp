@@ -2,7 +2,7 @@
 // A part of a CAD file is within the chord error that is proved of its mesh, and in the spheres
 // that are fitted to it; of an assembly, body by body. Where parts are, OpenCASCADE says.
 #include "geometry/mesh_distance.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/cad/cad_file.h"
 #include "simplifier/bodies.h"
 #include "simplifier/simplify.h"

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "geometry/mesh_distance.h"
-#include "geometry/mesh_report.h"
+#include "geometry/triangle_mesh.h"
 #include "io/mesh_io.h"
 #include "tests/simplifier/cad/cad_parts.h"
 #include "tests/support/temp_dir.h"
