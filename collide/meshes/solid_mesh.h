@@ -12,10 +12,10 @@
 //
 // const std::vector<spherule::Sphere> spheres{{{0, 0, 3}, 1}, {{0, 0, 0.75}, 1}};
 // const auto floor = spherule::HalfSpace{};
-// const std::optional<spherule::SolidContact> contact =
+// const std::optional<spherule::Contact> contact =
 //     deepest_contact(spherule::build_tree(spheres), {}, floor, {});
-// assert(contact && contact->sphere == 1);
-// assert(contact->overlap_depth > 0.249 && contact->overlap_depth <= 0.25);
+// assert(contact && contact->leaves.a == 1);
+// assert(contact->penetration_depth > 0.249 && contact->penetration_depth <= 0.25);
 // @endcode
 
 #include "collide/meshes/mesh_tree.h"
@@ -29,22 +29,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-
-namespace spherule {
-
-// Where a set of spheres touches a solid, and how deep.
-struct SolidContact {
-  std::int32_t sphere = -1;  // index into SphereTree::spheres()
-  // At least this far the sphere has to be moved for the two to part, in exact arithmetic under
-  // exactly the given poses, rounded downward: below zero where rounding alone may have made them
-  // touch. In the unit of the tree.
-  double overlap_depth = 0.0;
-  // A point of both, up to rounding: the sphere's centre where it is in the solid, otherwise the
-  // point of the solid that is nearest to it.
-  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
-};
-
-}  // namespace spherule
 
 // Spheres against a mesh with its inside.
 //
@@ -63,7 +47,6 @@ namespace spherule {
 
 namespace internal {
 class MeshInside;
-class NodeBoxes;
 }  // namespace internal
 
 // A mesh with its inside, as an obstacle. Immutable; threads may share it.
@@ -90,7 +73,6 @@ class SolidMesh {
 
   // For queries.
   const internal::MeshInside& inside() const { return *inside_; }
-  const internal::NodeBoxes& node_boxes() const { return *node_boxes_; }
   // Copies of a solid share it, and no others do.
   const std::shared_ptr<const internal::MeshInside>& shared_inside() const { return inside_; }
 
@@ -101,7 +83,6 @@ class SolidMesh {
   MeshTree mesh_;
   double inflation_;
   std::shared_ptr<const internal::MeshInside> inside_;
-  std::shared_ptr<const internal::NodeBoxes> node_boxes_;
 };
 
 // Whether a set of spheres and a solid, rigidly placed, overlap.
@@ -128,7 +109,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
 
 // The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
 // Examines every sphere that touches. Allocates.
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const SolidMesh& solid, const Pose& world_from_solid);
 
 }  // namespace spherule

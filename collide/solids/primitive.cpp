@@ -7,6 +7,7 @@
 #include "collide/search/queries.h"
 #include "collide/search/query.h"
 #include "collide/search/traversal.h"
+#include "collide/solids/convex.h"
 #include "collide/solids/solid_pose.h"
 
 #include <algorithm>
@@ -222,16 +223,24 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
   });
 }
 
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const Primitive& solid, const Pose& world_from_solid) {
-  return with_field(solid, [&](const auto& field) -> std::optional<SolidContact> {
+  return with_field(solid, [&](const auto& field) -> std::optional<Contact> {
     const SolidPose pose(tree, world_from_tree, field, world_from_solid);
     FindDeepest query(tree, pose);
     internal::search_tree(tree, query);
     if (query.sphere() < 0) return std::nullopt;
     const Sphere& sphere = tree.spheres()[static_cast<std::size_t>(query.sphere())];
-    return SolidContact{query.sphere(), -query.gap() - pose.gap_error(),
-                        world_from_solid * field.nearest(pose.in_solid(sphere.center))};
+    const internal::Convex of_tree =
+        internal::Convex::sphere({pose.in_solid(sphere.center), sphere.radius});
+    const internal::Convex of_solid = internal::convex_of(solid);
+    const internal::ConvexPair pair(of_tree, of_solid, pose.size());
+    Contact contact = internal::placed_contact(
+        {query.sphere(), 0}, pair.contact(pair.gap(of_tree.points[0]), 0.0, 0.0),
+        world_from_solid);
+    contact.penetration_depth = -query.gap() - pose.gap_error();
+    contact.position = world_from_solid * field.nearest(pose.in_solid(sphere.center));
+    return contact;
   });
 }
 

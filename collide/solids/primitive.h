@@ -94,7 +94,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
                         const Pose& world_from_solid, const DistanceRequest& request = {});
 
 // The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const Primitive& solid, const Pose& world_from_solid);
 
 // Upper bound of what the exact distance may exceed the clearance by where within() answers true,

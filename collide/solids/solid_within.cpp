@@ -38,8 +38,8 @@ class TrianglePairLeaves {
                      const Pose& world_from_b, const internal::RelativePose& pose, double clearance)
       : a_(a.mesh()),
         b_(b.mesh()),
-        boxes_a_(a.node_boxes()),
-        boxes_b_(b.node_boxes()),
+        boxes_a_(a.mesh().node_boxes()),
+        boxes_b_(b.mesh().node_boxes()),
         pose_(pose),
         b_from_a_(pose.b_from_a()),
         rotation_a_(world_from_a.matrix()),
@@ -192,7 +192,7 @@ class HullSearch {
 // A component of `other` lies in the inside of `solid`, if no triangles touch.
 bool holds_a_component(const SolidMesh& solid, const SolidMesh& other,
                        const internal::FrameChange& solid_from_other, double error) {
-  const std::span<const Vector3d> points = other.inside().component_points();
+  const std::span<const Vector3d> points = other.mesh().component_points();
   return solid.has_inside() && std::any_of(points.begin(), points.end(), [&](const Vector3d& p) {
            return solid.inside().contains(solid.mesh(), solid_from_other(p), error);
          });
