@@ -39,6 +39,7 @@ struct Body {
       : own_tree(build_tree(std::vector<Sphere>{{Vector3d::Zero(), reach}})),
         tree(&*own_tree),
         convex(internal::convex_of(rounded.core)),
+        core(rounded.core),
         growth(rounded.rounding) {}
   Body(const Body&) = delete;
 
@@ -49,7 +50,8 @@ struct Body {
   }
   // What is below a node, or more.
   Convex item(std::size_t node) const {
-    return tree->is_leaf(node) ? leaf(tree->sphere_index(node)) : Convex::sphere(tree->sphere(node));
+    return tree->is_leaf(node) ? leaf(tree->sphere_index(node))
+                               : Convex::sphere(tree->sphere(node));
   }
   bool has_inside() const { return solid != nullptr && solid->has_inside(); }
 
@@ -58,6 +60,7 @@ struct Body {
   const MeshTree* mesh = nullptr;
   const SolidMesh* solid = nullptr;
   std::optional<Convex> convex{};
+  Primitive core{};  // of `convex`
   double growth = 0.0;
 };
 
@@ -86,30 +89,54 @@ class BodyPair {
   const internal::RelativePose& pose() const { return pose_; }
   double growth() const { return growth_; }
   double reach() const { return reach_; }
-  double image_error() const {
-    return 136.0 * kUnitRoundoff * pose_.scene_size() + kUnderflow;
-  }
+  double gap_error() const { return 160.0 * kUnitRoundoff * size_ + kUnderflow; }
+  double image_error() const { return 136.0 * kUnitRoundoff * pose_.scene_size() + kUnderflow; }
 
   // The leaf tests of search/queries.h and nearest_first.h, without the growths.
   bool touches(NodePair pair) const { return gap_of(pair, reach_, reach_).lower <= reach_; }
   double gap(NodePair pair) const { return gap_of(pair, reach_, kNone).lower; }
-  bool may_touch(NodePair pair) const {
-    return is_decided_at_once(pair) || node_gap(pair, reach_) <= reach_;
+  bool may_touch(NodePair pair) const { return node_gap(pair) <= reach_; }
+  // What no leaves below two nodes are nearer than; where nodes overlap, how far they have to be
+  // moved to part, with the sign changed.
+  double node_gap(NodePair pair) const {
+    const bool are_leaves = a_.tree->is_leaf(pair.index(0)) && b_.tree->is_leaf(pair.index(1));
+    if (b_.convex && !are_leaves) {
+      return solid_gap(a_.tree->sphere(pair.index(0)), b_from_a_, b_.core);
+    }
+    if (a_.mesh == nullptr || b_.mesh == nullptr) return kNone;
+    return internal::box_gap(a_.mesh->node_boxes().box(pair.index(0)),
+                             b_.mesh->node_boxes().box(pair.index(1)), b_from_a_) -
+           (internal::kBoxError * pose_.scene_size() + 0x1p-160);
   }
-  double node_gap(NodePair pair) const { return node_gap(pair, least_upper_); }
+  // Negative ends of leaves that overlap by more than rounding.
   internal::GapInterval interval(NodePair pair) const {
-    const ConvexGap found = gap_of(pair, least_upper_, kNone);
+    ConvexGap found = gap_of(pair, least_upper_, kNone);
+    if (found.lower <= 0.0 && found.upper < least_upper_) {
+      const SpherePair leaves{a_.tree->sphere_index(pair.index(0)),
+                              b_.tree->sphere_index(pair.index(1))};
+      const auto overlap = contact(leaves, found.upper);
+      if (overlap) found.upper = std::min(found.upper, growth_ - overlap->depth);
+    }
     least_upper_ = std::min(least_upper_, found.upper);
     return {found.lower, found.upper};
   }
 
-  // Of two leaves that are not farther apart than that.
-  std::optional<internal::ConvexContact> contact(const SpherePair& leaves, double reach) const {
+  // Of two leaves that are not farther apart than that, if they may overlap by `least` or more.
+  std::optional<internal::ConvexContact> contact(
+      const SpherePair& leaves, double reach,
+      double least = -std::numeric_limits<double>::infinity()) const {
     const Convex of_a = a_.leaf(leaves.a), of_b = b_.leaf(leaves.b).placed(a_from_b_);
     const ConvexPair pair(of_a, of_b, size_);
     const ConvexGap found = pair.gap(axis_, reach);
-    if (found.lower > reach) return std::nullopt;
-    return pair.contact(found, a_.growth, b_.growth);
+    if (found.lower > reach || growth_ - found.lower < least) return std::nullopt;
+    internal::ConvexContact result = pair.contact(found, a_.growth, b_.growth);
+    // Of a sphere the depth is known, up to twice the error of the gap.
+    if (a_.mesh == nullptr && !a_.convex && b_.convex) {
+      const Sphere& sphere = a_.tree->spheres()[static_cast<std::size_t>(leaves.a)];
+      result.depth = std::max(
+          result.depth, growth_ - (solid_gap(sphere, b_from_a_, b_.core) + 2.0 * gap_error()));
+    }
+    return result;
   }
 
   // Whether a component of one lies in the inside of the other, if no leaves touch: nothing where
@@ -125,12 +152,6 @@ class BodyPair {
  private:
   static constexpr double kNone = -std::numeric_limits<double>::infinity();
 
-  // Two leaves of which one is a solid: their test is that of nodes.
-  bool is_decided_at_once(NodePair pair) const {
-    return (a_.convex || b_.convex) && a_.tree->is_leaf(pair.index(0)) &&
-           b_.tree->is_leaf(pair.index(1));
-  }
-
   ConvexGap gap_of(NodePair pair, double enough, double near) const {
     const Convex of_a = a_.item(pair.index(0));
     const Convex of_b = solid_ ? *solid_ : b_.item(pair.index(1)).placed(a_from_b_);
@@ -139,12 +160,14 @@ class BodyPair {
     return found;
   }
 
-  double node_gap(NodePair pair, double enough) const {
-    if (a_.convex || b_.convex) return gap_of(pair, enough, enough).lower;
-    if (a_.mesh == nullptr || b_.mesh == nullptr) return kNone;
-    return internal::box_gap(a_.mesh->node_boxes().box(pair.index(0)),
-                             b_.mesh->node_boxes().box(pair.index(1)), b_from_a_) -
-           (internal::kBoxError * pose_.scene_size() + 0x1p-160);
+  // SolidPose::gap() (collide/solids/solid_pose.h), rounded downward.
+  double solid_gap(const Sphere& sphere, const internal::FrameChange& change,
+                   const Primitive& solid) const {
+    const Vector3d center = change(sphere.center);
+    const double distance = std::visit(
+        [&](const auto& shape) { return internal::field_of(shape).signed_distance(center); },
+        solid);
+    return distance - sphere.radius - gap_error();
   }
 
   std::optional<bool> holds_a_component(const Body& holder, const Body& other,
@@ -205,11 +228,17 @@ class DeepestLeaves {
   bool afford(const internal::OpenedPair&, const auto&) const { return true; }
   double margin(NodePair) const { return pair_.reach(); }
   bool nearest_first() const { return false; }
-  bool enters(NodePair nodes) const { return pair_.may_touch(nodes); }
+  // No leaves below overlap deeper than the nodes.
+  bool enters(NodePair nodes) const {
+    return pair_.may_touch(nodes) &&
+           !(deepest_ && pair_.growth() - pair_.node_gap(nodes) < deepest_->depth);
+  }
   bool leaves(NodePair nodes) {
     const SpherePair leaves{pair_.a().tree->sphere_index(nodes.index(0)),
                             pair_.b().tree->sphere_index(nodes.index(1))};
-    const std::optional<internal::ConvexContact> contact = pair_.contact(leaves, pair_.reach());
+    const std::optional<internal::ConvexContact> contact =
+        pair_.contact(leaves, pair_.reach(),
+                      deepest_ ? deepest_->depth : -std::numeric_limits<double>::infinity());
     if (!contact) return true;
     if (deepest_ && (contact->depth < deepest_->depth ||
                      (contact->depth == deepest_->depth && leaves > leaves_))) {
@@ -230,8 +259,9 @@ class DeepestLeaves {
 
 bool come_within(const BodyPair& pair) {
   const SphereTree &a = *pair.a().tree, &b = *pair.b().tree;
-  if (!(a.is_leaf(0) && b.is_leaf(0)) && !pair.may_touch(NodePair(0, 0))) return false;
-  return internal::any_pair_within(a, b, pair.pose(), pair, pair.reach()) || pair.may_be_inside();
+  return (pair.may_touch(NodePair(0, 0)) &&
+          internal::any_pair_within(a, b, pair.pose(), pair, pair.reach())) ||
+         pair.may_be_inside();
 }
 
 DistanceResult distance_of(const BodyPair& pair, const DistanceRequest& request) {
@@ -239,9 +269,8 @@ DistanceResult distance_of(const BodyPair& pair, const DistanceRequest& request)
   DistanceRequest to_leaves = request;
   to_leaves.enough = add_up(request.enough, pair.growth());
   const internal::PairSpace space(a, b, pair.pose(), pair);
-  DistanceResult result =
-      internal::NearestFirst(space, pair.pose().gap_error(), to_leaves)
-          .run(NodePair(0, 0), pair.pose().gap(a.sphere(0), b.sphere(0)));
+  DistanceResult result = internal::NearestFirst(space, pair.pose().gap_error(), to_leaves)
+                              .run(NodePair(0, 0), pair.pose().gap(a.sphere(0), b.sphere(0)));
   if (pair.growth() > 0.0) {
     result.lower = std::max(0.0, sub_down(result.lower, pair.growth()));
     result.upper = std::max(0.0, sub_up(result.upper, pair.growth()));
@@ -269,14 +298,16 @@ CollisionResult collide_of(const BodyPair& pair, const CollisionRequest& request
   return result;
 }
 
+// Of two bodies of which collides() says that they touch.
 std::optional<Contact> contact_of(const BodyPair& pair) {
-  if (!come_within(pair)) return std::nullopt;
   const SphereTree &a = *pair.a().tree, &b = *pair.b().tree;
   DeepestLeaves query(pair);
   internal::traverse(a, b, pair.pose(), query);
-  if (query.deepest()) return placed_contact(query.leaves(), *query.deepest(), pair.world_from_a());
-  // One is inside the other, and has to be moved by the distance of their surfaces at least; or the
-  // test of two leaves, which differ by rounding from query to query, is uncertain.
+  if (query.deepest())
+    return internal::placed_contact(query.leaves(), *query.deepest(), pair.world_from_a());
+  // One is inside the other, and has to be moved by the distance of the surfaces that are grown,
+  // and by the growths, at least; or
+  // tests of the two nearest leaves differ by rounding.
   const internal::PairSpace space(a, b, pair.pose(), pair);
   const DistanceRequest request;
   const DistanceResult nearest =
@@ -288,9 +319,9 @@ std::optional<Contact> contact_of(const BodyPair& pair) {
       *pair.contact(nearest.nearest, std::numeric_limits<double>::infinity());
   if (inside) {
     found.normal = -found.normal;
-    found.depth = nearest.lower;
+    found.depth = add_down(nearest.lower, pair.growth());
   }
-  Contact contact = placed_contact(nearest.nearest, found, pair.world_from_a());
+  Contact contact = internal::placed_contact(nearest.nearest, found, pair.world_from_a());
   if (inside) contact.kind = ContactKind::kInside;
   return contact;
 }
@@ -354,8 +385,7 @@ std::optional<Contact> flipped(std::optional<Contact> contact) {
 template <class X>
 inline constexpr bool kIsTree = std::is_same_v<X, SphereTree>;
 template <class X, class Y>
-inline constexpr bool kAreCovered =
-    std::is_same_v<X, CoveredMesh>&& std::is_same_v<Y, CoveredMesh>;
+inline constexpr bool kAreCovered = std::is_same_v<X, CoveredMesh>&& std::is_same_v<Y, CoveredMesh>;
 
 // What `direct` calls is there for two types, without a rounding.
 template <class Answer, class Direct>
@@ -381,8 +411,8 @@ std::optional<Answer> direct_answer(const ShapeRef& a, const Pose& world_from_a,
       a.get(), b.get());
 }
 
-// In the order of ShapeRef::Alternatives, half-spaces last: by the function for the two types, or by
-// the search.
+// In the order of ShapeRef::Alternatives, half-spaces last: by the function for the two types, or
+// by the search.
 template <class Answer, class Direct, class Search>
 Answer answer(const ShapeRef& a, const Pose& world_from_a, const ShapeRef& b,
               const Pose& world_from_b, double clearance, const Direct& direct,
@@ -472,11 +502,13 @@ DistanceResult distance(const ShapeRef& a, const Pose& world_from_a, const Shape
 
 std::optional<Contact> deepest_contact(const ShapeRef& a, const Pose& world_from_a,
                                        const ShapeRef& b, const Pose& world_from_b) {
+  if (!collides(a, world_from_a, b, world_from_b)) return std::nullopt;
   return answer<std::optional<Contact>>(
       a, world_from_a, b, world_from_b, 0.0,
       [&]<class X, class Y>(const X& x, const Pose& at_x, const Y& y,
                             const Pose& at_y) -> std::optional<std::optional<Contact>> {
-        if constexpr (kAreCovered<X, Y> || (kIsTree<X> && !std::is_same_v<Y, MeshTree>)) {
+        if constexpr (kAreCovered<X, Y> || std::is_same_v<Y, SphereTree> ||
+                      std::is_same_v<Y, SolidMesh>) {
           return deepest_contact(x, at_x, y, at_y);
         } else {
           return std::nullopt;

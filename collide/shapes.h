@@ -67,21 +67,22 @@ class ShapeRef {
   Alternatives shape_;
 };
 
-// The queries of any two shapes a and b, rigidly placed. A shape consists of leaves, with or without
-// an inside: the spheres of a tree, the triangles of a mesh, one solid. SolidMesh and CoveredMesh
-// have an inside; whatever is wholly inside touches it, at the distance 0. A CoveredMesh is its
-// solid(), except against another one. SolidMesh::inflation() and `rounding` count.
+// The queries of any two shapes a and b, rigidly placed. A shape consists of leaves, with or
+// without an inside: the spheres of a tree, the triangles of a mesh, one solid. SolidMesh and
+// CoveredMesh have an inside; whatever is wholly inside touches it, at the distance 0. A
+// CoveredMesh is its solid(), except against another one. SolidMesh::inflation() and `rounding`
+// count.
 //
 // Where a function for two types has the same name (collide.h, mesh_tree.h, solid_mesh.h,
 // primitive.h, mesh_contact.h), a call with these types, in either order, gives its answer, with
 // its guarantees. What follows is about all others. Of two half-spaces nothing but "they touch" is
 // answered, though parallel ones may not.
 //
-// All bounds are proved for exact arithmetic under exactly the given poses (collide/solids/convex.h).
-// Those of two leaves are as near to each other as the search for their nearest points comes: in our
-// tests within 1e-13 of the scene, of needles and cylinders within 1e-9. This is what the word "slack"
-// stands for here; there is no bound in advance. Poses that differ by a swap of a and b may give
-// answers that differ within the slack.
+// All bounds are proved for exact arithmetic under exactly the given poses
+// (collide/solids/convex.h). Those of two leaves are as near to each other as the search for their
+// nearest points comes: in our tests within 1e-13 of the scene, of needles and cylinders within
+// 1e-9. This is what the word "slack" stands for here; there is no bound in advance. Poses that
+// differ by a swap of a and b may give answers that differ within the slack.
 //
 // All may allocate. They throw Error for a rounding that is out of range and as require_clearance()
 // and, in sweep(), as the function for two trees does.

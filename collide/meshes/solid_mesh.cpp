@@ -102,13 +102,12 @@ class FindDeepest {
     if (way.norm() > 0.0) contact_.normal = way.normalized();
     contact_.on_a = center + sphere.radius * contact_.normal;
     contact_.on_b = nearest - solid_.inflation() * contact_.normal;
-    in_mesh_ = inside ? center : nearest;
+    contact_.common = inside ? center : nearest;
     return true;
   }
   std::int32_t sphere() const { return sphere_; }
-  // In the mesh's frame, as the point of both.
+  // In the mesh's frame.
   const internal::ConvexContact& contact() const { return contact_; }
-  const Vector3d& in_mesh() const { return in_mesh_; }
 
  private:
   const SphereTree& tree_;
@@ -116,7 +115,6 @@ class FindDeepest {
   const SpheresInside& spheres_;
   std::int32_t sphere_ = -1;
   internal::ConvexContact contact_;
-  Vector3d in_mesh_ = Vector3d::Zero();
 };
 
 }  // namespace
@@ -180,9 +178,7 @@ std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world
   const SpheresInside spheres(tree, solid, pose);
   FindDeepest query(tree, solid, spheres);
   internal::search_tree(tree, query);
-  Contact contact = internal::placed_contact({query.sphere(), -1}, query.contact(), world_from_solid);
-  contact.position = world_from_solid * query.in_mesh();
-  return contact;
+  return internal::placed_contact({query.sphere(), -1}, query.contact(), world_from_solid);
 }
 
 }  // namespace spherule

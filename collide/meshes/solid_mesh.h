@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Where a set of spheres touches a solid, and how deep.
+// Spheres against a mesh with its inside.
 //
 // @code{.cpp}
-// #include <spherule/collide/solids/primitive.h>
 // #include <spherule/collide/meshes/solid_mesh.h>
 // #include <spherule/spheretree/build.h>
 // #include <cassert>
-// #include <vector>
 //
-// const std::vector<spherule::Sphere> spheres{{{0, 0, 3}, 1}, {{0, 0, 0.75}, 1}};
-// const auto floor = spherule::HalfSpace{};
-// const std::optional<spherule::Contact> contact =
-//     deepest_contact(spherule::build_tree(spheres), {}, floor, {});
-// assert(contact && contact->leaves.a == 1);
-// assert(contact->penetration_depth > 0.249 && contact->penetration_depth <= 0.25);
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::SolidMesh solid(tetrahedron);
+// const std::vector<spherule::Sphere> spheres{{{0.2, 0.2, 0.2}, 0.01}};
+// const spherule::SphereTree inside = spherule::build_tree(spheres);
+// assert(solid.is_closed() && collides(inside, {}, solid, {}));
+// assert(!collides(inside, {}, solid.mesh(), {}));  // it touches no triangle
 // @endcode
 
 #include "collide/meshes/mesh_tree.h"
@@ -29,19 +28,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-
-// Spheres against a mesh with its inside.
-//
-// @code{.cpp}
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const spherule::SolidMesh solid(tetrahedron);
-// const std::vector<spherule::Sphere> spheres{{{0.2, 0.2, 0.2}, 0.01}};
-// const spherule::SphereTree inside = spherule::build_tree(spheres);
-// assert(solid.is_closed() && collides(inside, {}, solid, {}));
-// assert(!collides(inside, {}, solid.mesh(), {}));  // it touches no triangle
-// @endcode
 
 namespace spherule {
 

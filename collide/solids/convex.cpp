@@ -16,12 +16,13 @@ struct Extreme {
   Vector3d point;
 };
 
-// The unit vector of the disc's plane nearest to `d`; zero if that is perpendicular to the plane.
+// The unit vector of the disc's plane nearest to `d`; zero if that is nearly perpendicular to it,
+// as rounding would then take the vector out of the plane.
 Vector3d in_plane(const Vector3d& d, const Vector3d& axis) {
   Vector3d e = d - d.dot(axis) * axis;
   e -= e.dot(axis) * axis;
   const double length = e.norm();
-  return length > 0.0 ? Vector3d(e / length) : Vector3d(Vector3d::Zero());
+  return length > 0x1p-40 * d.norm() ? Vector3d(e / length) : Vector3d(Vector3d::Zero());
 }
 
 Extreme extreme(const Convex& core, const Vector3d& d) {
@@ -241,7 +242,8 @@ class ConvexPair::Search {
 
   bool is_enough() const {
     return gap_.lower > enough_ || gap_.upper <= near_ ||
-           gap_.upper - gap_.lower <= 4.0 * pair_.error_ || gap_.upper + radii_ <= 2.0 * pair_.error_;
+           gap_.upper - gap_.lower <= 4.0 * pair_.error_ ||
+           gap_.upper + radii_ <= 2.0 * pair_.error_;
   }
 
   // The nearest points of the simplex; false if they are no nearer than those before.
@@ -293,9 +295,9 @@ class ConvexPair::Polytope {
       corners_[corner_count_++] = simplex.corners[static_cast<std::size_t>(i)];
     }
     if (simplex.count == 4) {
-      const bool turned = simplex.p(0).dot(simplex.p(1).cross(simplex.p(2))) >
-                          simplex.p(3).dot((simplex.p(1) - simplex.p(0))
-                                               .cross(simplex.p(2) - simplex.p(0)));
+      const bool turned =
+          simplex.p(0).dot(simplex.p(1).cross(simplex.p(2))) >
+          simplex.p(3).dot((simplex.p(1) - simplex.p(0)).cross(simplex.p(2) - simplex.p(0)));
       const std::size_t one = turned ? 1 : 2, two = turned ? 2 : 1;
       add(0, one, two);
       add(0, two, 3);
@@ -321,8 +323,9 @@ class ConvexPair::Polytope {
   void expand() {
     while (face_count_ > 0) {
       const auto end = faces_.begin() + static_cast<std::ptrdiff_t>(face_count_);
-      const auto nearest = std::min_element(
-          faces_.begin(), end, [](const Face& f, const Face& g) { return f.distance < g.distance; });
+      const auto nearest = std::min_element(faces_.begin(), end, [](const Face& f, const Face& g) {
+        return f.distance < g.distance;
+      });
       const bool proves = std::all_of(faces_.begin(), end, [](const Face& f) { return f.is_seen; });
       if (proves && nearest->distance > depth_) {
         depth_ = nearest->distance;
@@ -377,8 +380,8 @@ class ConvexPair::Polytope {
     const Vector3d cross = (q - p).cross(r - p);
     const double least = std::min({cross.dot(p), cross.dot(q), cross.dot(r)});
     const double length = cross.norm();
-    const double lengths = (q - p).norm() * (r - p).norm() *
-                           std::max({p.norm(), q.norm(), r.norm(), 0x1p-300});
+    const double lengths =
+        (q - p).norm() * (r - p).norm() * std::max({p.norm(), q.norm(), r.norm(), 0x1p-300});
     const bool is_flat = !(length > 0.0);
     faces_[face_count_++] = {{i, j, k},
                              is_flat ? Vector3d(Vector3d::Zero()) : Vector3d(cross / length),
@@ -442,8 +445,7 @@ ConvexGap ConvexPair::half_space_gap() const {
   const Convex& half = swapped ? a_ : b_;
   const Convex& other = swapped ? b_ : a_;
   const Vector3d n = half.disc_axis.normalized();
-  const Vector3d point =
-      other.is_half_space ? other.points[0] : extreme(other, -n).point;
+  const Vector3d point = other.is_half_space ? other.points[0] : extreme(other, -n).point;
   const double gap = n.dot(point - half.points[0]);
   ConvexGap result;
   result.upper = gap - other.radius + 2.0 * error_;
@@ -491,6 +493,10 @@ ConvexContact ConvexPair::contact(const ConvexGap& gap, double growth_a, double 
       on_b = nearest.b;
     }
   }
+  // Between the nearest points, as far as both reach.
+  const double length = is_plane ? std::max(0.0, -gap.axis.dot(apart)) : apart.norm();
+  const double from = std::max(0.0, length - radius_b), to = std::min(length, radius_a);
+  result.common = gap.a + 0.5 * (from + to) * result.normal;
   result.on_a = on_a + radius_a * result.normal;
   result.on_b = on_b - radius_b * result.normal;
   return result;
@@ -539,7 +545,7 @@ Contact placed_contact(const SpherePair& leaves, const ConvexContact& contact,
   result.penetration_depth = contact.depth;
   result.normal = world_from.matrix() * contact.normal;
   result.nearest_points = {world_from * contact.on_a, world_from * contact.on_b};
-  result.position = 0.5 * (result.nearest_points[0] + result.nearest_points[1]);
+  result.position = world_from * contact.common;
   return result;
 }
 

@@ -41,7 +41,6 @@ class SolidPose {
     return 304.0 * kUnitRoundoff * pose_.scene_size() + 40.0 * kUnitRoundoff * clearance +
            4.0 * kUnderflow;
   }
-  double size() const { return pose_.scene_size(); }
   double gap_error() const { return 152.0 * kUnitRoundoff * pose_.node_size() + kUnderflow; }
 
   Eigen::Vector3d in_solid(const Eigen::Vector3d& p) const { return solid_from_tree_(p); }

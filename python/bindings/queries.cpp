@@ -4,7 +4,7 @@
 #include "collide/contact.h"
 #include "collide/motion/motion.h"
 #include "collide/point_cloud.h"
-#include "collide/solids/solid_within.h"
+#include "collide/shapes.h"
 #include "collide/sweep.h"
 #include "python/bindings/support.h"
 

@@ -6,6 +6,7 @@
 #include "collide/contact.h"
 #include "collide/meshes/solid_mesh.h"
 #include "collide/search/relative_pose.h"
+#include "collide/shapes.h"
 #include "collide/solids/primitive.h"
 #include "spheretree/build.h"
 #include "tests/soak/scale.h"

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "collide/meshes/mesh_inside.h"
 #include "collide/search/relative_pose.h"
-#include "collide/solids/solid_within.h"
+#include "collide/shapes.h"
 #include "geometry/ray.h"
 #include "spheretree/build.h"
 #include "tests/support/effort.h"
