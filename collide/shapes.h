@@ -84,7 +84,8 @@ class ShapeRef {
 // 1e-9. This is what the word "slack" stands for here; there is no bound in advance. Poses that
 // differ by a swap of a and b may give answers that differ within the slack.
 //
-// All may allocate. They throw Error for a rounding that is out of range and as require_clearance()
+// All may allocate. They throw Error for a rounding that is out of range, for a half-space that is
+// 2e14 or farther from the other shape, and as require_clearance()
 // and, in sweep(), as the function for two trees does.
 
 // Whether they have a point in common. Never false if they have. If it is true, they come within

@@ -4,7 +4,7 @@
 // The leaves of all shapes, and what is proved of two of them. A leaf is a convex core grown by a
 // radius: a sphere is a grown point, a capsule a grown segment, a triangle or a box is grown by 0.
 //
-// Error budget, u = 2^-53. Two leaves are compared in the frame of the first. `size` (S) bounds,
+// Error budget (G4), u = 2^-53. Two leaves are compared in the frame of the first. `size` (S) bounds,
 // for the second as it stands in its own frame, the sum of what both cores reach from their
 // origins, of both radii and of the distance of the two frames. `error()` is 192 u S.
 //   - Image of the second core: 136 u S (search/relative_pose.h), for points, axes and discs alike.
