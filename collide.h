@@ -34,7 +34,7 @@
 //   collide/meshes/solid_mesh.h   a mesh with its inside, as an obstacle
 //   collide/meshes/mesh_contact.h  covered meshes: contacts confirmed on the triangles
 //   collide/solids/primitive.h    box, sphere, cylinder, capsule, half-space
-//   collide/solids/solid_within.h  two solid meshes, or one and a primitive
+//   collide/shapes.h              any shape against any: collides() to sweep(), RoundedSolid, Shape
 // Covers of meshes by spheres come from spherule/simplifier.h, robots are in spherule/robot.h. What
 // is proved: docs/guarantee.md.
 
@@ -46,8 +46,8 @@
 #include "collide/motion/motion.h"
 #include "collide/pair_cache.h"
 #include "collide/point_cloud.h"
+#include "collide/shapes.h"
 #include "collide/solids/primitive.h"
-#include "collide/solids/solid_within.h"
 #include "collide/sweep.h"
 #include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"

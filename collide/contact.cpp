@@ -80,18 +80,6 @@ class DeepestFirst {
   std::priority_queue<Waiting> queue_;
 };
 
-Eigen::Vector3d middle_of_overlap(const Sphere& a, const Pose& world_from_a, const Sphere& b,
-                                  const Pose& world_from_b) {
-  const Eigen::Vector3d from = world_from_a * a.center;
-  const Eigen::Vector3d way = world_from_b * b.center - from;
-  const double distance = way.norm();
-  if (!(distance > 0.0)) return from;
-  // Where on the way the two spheres begin and end.
-  const double begin = std::max(-a.radius, distance - b.radius);
-  const double end = std::min(a.radius, distance + b.radius);
-  return from + (0.5 * (begin + end) / distance) * way;
-}
-
 // The gap of two spheres errs by less than leaf_pad() = 76 u S: the offset of the centres, 67.2 u S
 // (relative_pose.h), half the relative error of its square and the root, 2.5 u S, the sum of the
 // radii and the difference, 2 u S; the subtraction below, u S. A pair that touches has a computed
@@ -102,11 +90,22 @@ Contact contact_of(ContactKind kind, const Touching& touching, const SphereTree&
   const auto sphere = [](const SphereTree& tree, std::int32_t index) {
     return tree.spheres()[static_cast<std::size_t>(index)];
   };
+  const Sphere of_a = sphere(a, touching.spheres.a), of_b = sphere(b, touching.spheres.b);
+  const Eigen::Vector3d center_a = world_from_a * of_a.center,
+                        center_b = world_from_b * of_b.center;
+  const Eigen::Vector3d way = center_b - center_a;
+  const double distance = way.norm();
+  const Eigen::Vector3d normal =
+      distance > 0.0 ? Eigen::Vector3d(way / distance) : Eigen::Vector3d::UnitX();
+  // Where on the way the two spheres begin and end.
+  const double begin = std::max(-of_a.radius, distance - of_b.radius);
+  const double end = std::min(of_a.radius, distance + of_b.radius);
   return {.kind = kind,
-          .spheres = touching.spheres,
-          .overlap_depth = -touching.gap - pose.leaf_pad(),
-          .world_point = middle_of_overlap(sphere(a, touching.spheres.a), world_from_a,
-                                           sphere(b, touching.spheres.b), world_from_b),
+          .leaves = touching.spheres,
+          .penetration_depth = -touching.gap - pose.leaf_pad(),
+          .normal = normal,
+          .nearest_points = {center_a + of_a.radius * normal, center_b - of_b.radius * normal},
+          .position = center_a + 0.5 * (begin + end) * normal,
           .triangles = std::nullopt};
 }
 
@@ -117,7 +116,7 @@ std::optional<Contact> deepest_contact(const SphereTree& a, const Pose& world_fr
   const internal::RelativePose pose(a, world_from_a, b, world_from_b);
   const std::optional<Touching> deepest = DeepestFirst(a, b, pose).next();
   if (!deepest) return std::nullopt;
-  return contact_of(ContactKind::kSpheres, *deepest, a, world_from_a, b, world_from_b, pose);
+  return contact_of(ContactKind::kLeaves, *deepest, a, world_from_a, b, world_from_b, pose);
 }
 
 std::optional<Contact> deepest_contact(const CoveredMesh& a, const Pose& world_from_a,

@@ -14,8 +14,8 @@
 // const spherule::SphereTree tree = spherule::build_tree(spheres);
 // const auto beside = spherule::Pose::from_translation({3.5, 0, 0});
 // const auto contact = spherule::deepest_contact(tree, {}, tree, beside);
-// assert(contact && contact->spheres.a == 1 && contact->spheres.b == 0);
-// assert(contact->overlap_depth > 0.499 && contact->overlap_depth <= 0.5);
+// assert(contact && contact->leaves.a == 1 && contact->leaves.b == 0);
+// assert(contact->penetration_depth > 0.499 && contact->penetration_depth <= 0.5);
 // @endcode
 
 #include "collide/collide.h"
@@ -28,30 +28,6 @@
 #include <optional>
 
 namespace spherule {
-
-// What shows that two bodies touch.
-enum class ContactKind {
-  kSpheres,    // the spheres of both; no meshes were queried
-  kTriangles,  // triangles under these spheres
-  kInside,     // no triangles touch, but a component of one mesh lies inside the other
-};
-
-// One contact of two bodies.
-struct Contact {
-  ContactKind kind = ContactKind::kSpheres;
-  // Indices of two spheres that touch into SphereTree::spheres() of a and of b.
-  SpherePair spheres;
-  // Lower bound of the penetration depth of these two spheres, in exact arithmetic under exactly
-  // the given poses: the sum of the radii less the distance of the centres, rounded downward. In
-  // the unit of the trees. Nothing is said of the penetration depth of the meshes, nor of how far
-  // the bodies have to be moved. Never below -2 collision_slack(); below zero where rounding alone
-  // may have made them touch.
-  double overlap_depth = 0.0;
-  // In the middle of what the two spheres share of the line through their centres, up to rounding.
-  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
-  // For kTriangles, as touching_triangles() says.
-  std::optional<TrianglePair> triangles;
-};
 
 // The contact of two sets of spheres: of all pairs of spheres that touch, the one that overlaps
 // deepest up to rounding; none exactly if collides() is false. Equal for every tree over the same

@@ -5,12 +5,15 @@
 #include "collide/collide.h"
 #include "collide/motion/free_time.h"
 #include "collide/motion/gap_rate.h"
+#include "collide/shapes.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 // Proof of G6. At an evaluation, t = m, the traversal finds a lower bound g of the gap of every
 // pair of spheres under exactly the poses pose_at(m), and from
@@ -48,20 +51,121 @@ double largest_slack(const SphereTree& a, const SphereTree& b, const GapRate& ra
   return internal::kSlack * scene + 16.0 * kUnitRoundoff * clearance + 8.0 * kUnderflow;
 }
 
-class Sweep {
+// What an instant of two moving trees shows.
+class TreeInstants {
  public:
-  Sweep(const SphereTree& a, const Motion& motion_a, const SphereTree& b, const Motion& motion_b,
-        const SweepRequest& request)
+  TreeInstants(const SphereTree& a, const Motion& motion_a, const SphereTree& b,
+               const Motion& motion_b, const SweepRequest& request)
       : a_(a),
         b_(b),
         motion_a_(motion_a),
         motion_b_(motion_b),
-        request_(request),
-        rate_(a, motion_a, b, motion_b),
-        limits_{request.max_node_tests, internal::Deadline(request.max_time), {}} {
+        clearance_(request.clearance),
+        rate_(a, motion_a, b, motion_b) {
     const double errors = motion_a.pose_error(a.reach()) + motion_b.pose_error(b.reach());
-    reserve_ = 2.0 * errors + largest_slack(a, b, rate_, errors, request.clearance);
+    reserve_ = 2.0 * errors + largest_slack(a, b, rate_, errors, clearance_);
   }
+
+  Evaluation evaluate(double t, double wanted, double useful, Limits& limits) {
+    const Pose world_from_a = motion_a_.pose_at(t);
+    const Pose world_from_b = motion_b_.pose_at(t);
+    const internal::RelativePose pose(a_, world_from_a, b_, world_from_b);
+    internal::FreeTime query(a_, b_, pose, rate_, clearance_, reserve_, wanted, useful, limits);
+    const Evaluation evaluation = query.run(decisive_);
+    if (evaluation.decisive) decisive_ = evaluation.decisive;
+    return evaluation;
+  }
+
+ private:
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const Motion& motion_a_;
+  const Motion& motion_b_;
+  const double clearance_;
+  const GapRate rate_;
+  double reserve_ = 0.0;
+  std::optional<internal::NodePair> decisive_;  // of an earlier evaluation
+};
+
+// Of any two shapes: their distance, and how far any of their points can move. From the middle of
+// an interval to the motions requested the gap shrinks by no more than E and the way (see above).
+class ShapeInstants {
+ public:
+  ShapeInstants(const ShapeRef& a, const Motion& motion_a, const ShapeRef& b,
+                const Motion& motion_b, const SweepRequest& request)
+      : a_(a),
+        b_(b),
+        motion_a_(motion_a),
+        motion_b_(motion_b),
+        clearance_(request.clearance),
+        of_a_(internal::extent_of(a)),
+        of_b_(internal::extent_of(b)),
+        are_bounded_(of_a_.is_bounded && of_b_.is_bounded),
+        rate_(reach_of(of_a_), motion_a, reach_of(of_b_), motion_b) {
+    // The point of a half-space that is nearest to a point is no farther from the origin than that.
+    double reach_a = reach_of(of_a_), reach_b = reach_of(of_b_);
+    if (!of_b_.is_bounded) reach_b = reach_a + rate_.farthest_frames();
+    if (!of_a_.is_bounded) reach_a = reach_b + rate_.farthest_frames();
+    reserve_ = (motion_a.pose_error(reach_a) + motion_b.pose_error(reach_b)) * (1.0 + 1e-9);
+  }
+
+  Evaluation evaluate(double t, double wanted, double useful, Limits& limits) {
+    const Pose world_from_a = motion_a_.pose_at(t);
+    const Pose world_from_b = motion_b_.pose_at(t);
+    DistanceRequest request;
+    request.enough = needed(wanted);
+    request.max_node_tests = limits.max_node_tests - limits.cost.node_tests;
+    request.max_time = limits.deadline.left();
+    const DistanceResult found = distance(a_, world_from_a, b_, world_from_b, request);
+    limits.cost.node_tests += found.cost.node_tests;
+    limits.cost.leaf_tests += found.cost.leaf_tests;
+    const bool may_touch = !(found.lower > clearance_);
+    Evaluation evaluation;
+    evaluation.complete = found.complete || !may_touch;
+    evaluation.contact =
+        found.complete && may_touch && within(a_, world_from_a, b_, world_from_b, clearance_);
+    evaluation.pair = found.nearest;
+    evaluation.free_time = may_touch ? 0.0 : wanted;
+    while (evaluation.free_time > 0.0 && !(found.lower > needed(evaluation.free_time))) {
+      evaluation.free_time *= 0.5;
+      if (evaluation.free_time < useful) evaluation.free_time = 0.0;
+    }
+    return evaluation;
+  }
+
+ private:
+  static double reach_of(const internal::Extent& extent) {
+    if (!extent.is_bounded) return std::numeric_limits<double>::infinity();
+    return add_up(extent.around.radius, norm_upper(extent.around.center));
+  }
+
+  // A gap that is not used up in that time.
+  double needed(double time) const {
+    const double way = are_bounded_ ? rate_.approach(of_a_.around, of_b_.around, time)
+                                    : rate_.approach(time);
+    return (clearance_ + reserve_ + way) * (1.0 + 16.0 * kUnitRoundoff);
+  }
+
+  const ShapeRef& a_;
+  const ShapeRef& b_;
+  const Motion& motion_a_;
+  const Motion& motion_b_;
+  const double clearance_;
+  const internal::Extent of_a_;
+  const internal::Extent of_b_;
+  const bool are_bounded_;
+  const GapRate rate_;
+  double reserve_ = 0.0;
+};
+
+// Adaptive bisection. `evaluate(t, wanted, useful, limits)` of the instants is that of FreeTime.
+template <class Instants>
+class Sweep {
+ public:
+  Sweep(Instants instants, const SweepRequest& request)
+      : instants_(std::move(instants)),
+        request_(request),
+        limits_{request.max_node_tests, internal::Deadline(request.max_time), {}} {}
 
   SweepResult run() {
     push(0.0, 1.0);
@@ -140,13 +244,7 @@ class Sweep {
   }
 
   Evaluation evaluate(double t, double wanted, double useful) {
-    const Pose world_from_a = motion_a_.pose_at(t);
-    const Pose world_from_b = motion_b_.pose_at(t);
-    const internal::RelativePose pose(a_, world_from_a, b_, world_from_b);
-    internal::FreeTime query(a_, b_, pose, rate_, request_.clearance, reserve_, wanted, useful,
-                             limits_);
-    const Evaluation evaluation = query.run(decisive_);
-    if (evaluation.decisive) decisive_ = evaluation.decisive;
+    const Evaluation evaluation = instants_.evaluate(t, wanted, useful, limits_);
     ++result_.evaluations;
     if (evaluation.contact && t < result_.contact_at) {
       result_.contact_at = t;
@@ -155,31 +253,42 @@ class Sweep {
     return evaluation;
   }
 
-  const SphereTree& a_;
-  const SphereTree& b_;
-  const Motion& motion_a_;
-  const Motion& motion_b_;
+  Instants instants_;
   const SweepRequest& request_;
-  const GapRate rate_;
-  double reserve_ = 0.0;
   Limits limits_;
   // Dividing replaces an interval by two of at most half its length, so one interval of each length
   // waits, and only those longer than kFinest are divided: 42 at most.
   std::array<Interval, 48> intervals_;
   std::size_t waiting_ = 0;
-  std::optional<internal::NodePair> decisive_;  // of an earlier evaluation
   SweepResult result_;
 };
+
+void require_request(const SweepRequest& request) {
+  require_clearance(request.clearance);
+  if (!(request.resolution >= kFinest && request.resolution <= 1.0)) {
+    throw Error("sweep", "the resolution is not a number from 2^-40 to 1");
+  }
+}
 
 }  // namespace
 
 SweepResult sweep(const SphereTree& a, const Motion& motion_a, const SphereTree& b,
                   const Motion& motion_b, const SweepRequest& request) {
-  require_clearance(request.clearance);
-  if (!(request.resolution >= kFinest && request.resolution <= 1.0)) {
-    throw Error("sweep", "the resolution is not a number from 2^-40 to 1");
+  require_request(request);
+  return Sweep(TreeInstants(a, motion_a, b, motion_b, request), request).run();
+}
+
+SweepResult sweep(const ShapeRef& a, const Motion& motion_a, const ShapeRef& b,
+                  const Motion& motion_b, const SweepRequest& request) {
+  require_request(request);
+  const auto tree_of = [](const ShapeRef& shape) {
+    const auto* const tree = std::get_if<const SphereTree*>(&shape.get());
+    return tree != nullptr ? *tree : nullptr;
+  };
+  if (tree_of(a) != nullptr && tree_of(b) != nullptr) {
+    return sweep(*tree_of(a), motion_a, *tree_of(b), motion_b, request);
   }
-  return Sweep(a, motion_a, b, motion_b, request).run();
+  return Sweep(ShapeInstants(a, motion_a, b, motion_b, request), request).run();
 }
 
 void require_resolution(double resolution) {

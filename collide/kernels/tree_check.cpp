@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "collide/search/relative_pose.h"
-#include "spheretree/build.h"
+#include "spheretree/sphere_tree.h"
 
 #include <algorithm>
 #include <cassert>

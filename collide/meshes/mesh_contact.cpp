@@ -345,7 +345,7 @@ double ListedTriangles::depth(const TrianglePair& pair) const {
 bool ListedTriangles::holds_a_component(const Side& side, const CoveredMesh& other) const {
   const MeshInside& inside = side.mesh.inside();
   if (!inside.has_inside()) return false;
-  const std::span<const Vector3d> points = other.inside().component_points();
+  const std::span<const Vector3d> points = other.mesh().component_points();
   return std::any_of(points.begin(), points.end(), [&](const Vector3d& point) {
     return inside.contains(side.mesh.mesh(), side.from_other(point), image_pad_);
   });

@@ -92,12 +92,6 @@ class CoveredMesh {
   std::shared_ptr<const internal::PatchTrees> patches_;
 };
 
-// A triangle of each of two meshes.
-struct TrianglePair {
-  std::int32_t a = 0;
-  std::int32_t b = 0;
-};
-
 // Whether two meshes have a point in common, of their triangles or of their insides.
 //
 // Never false if they have one in exact arithmetic under exactly the given poses, and the spheres

@@ -136,34 +136,43 @@ std::optional<bool> winds(const MeshTree& mesh, const std::vector<TriangleRole>&
 
 }  // namespace
 
-MeshInside::MeshInside(const TriangleMesh& mesh) {
+std::vector<Vector3d> component_points(const TriangleMesh& mesh) {
   const std::vector<std::array<int, 3>> triangles = corners_by_position(mesh);
   OrientedDisjointSets components(mesh.vertices.size());
   for (const std::array<int, 3>& t : triangles) {
     components.join(t[0], t[1]);
     components.join(t[1], t[2]);
   }
-  MeshShells shells = find_shells(triangles, mesh.vertices);
-  is_closed_ = shells.are_closed;
-  roles_ = std::move(shells.roles);
   Eigen::AlignedBox3d around;
   for (const Vector3d& vertex : mesh.vertices) around.extend(vertex);
   const Vector3d middle = around.center();
   std::vector<int> point_of(mesh.vertices.size(), -1);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::array<int, 3>& t = triangles[i];
+  std::vector<Vector3d> points;
+  for (const std::array<int, 3>& t : triangles) {
     const auto component = static_cast<std::size_t>(components.find(t[0]).root);
-    const bool counts = roles_[i].counts();
-    has_inside_ = has_inside_ || counts;
     if (point_of[component] < 0) {
-      point_of[component] = static_cast<int>(points_.size());
-      points_.push_back(mesh.vertices[static_cast<std::size_t>(t[0])]);
+      point_of[component] = static_cast<int>(points.size());
+      points.push_back(mesh.vertices[static_cast<std::size_t>(t[0])]);
     }
-    Vector3d& point = points_[static_cast<std::size_t>(point_of[component])];
+    Vector3d& point = points[static_cast<std::size_t>(point_of[component])];
     for (const int corner : t) {
       const Vector3d& vertex = mesh.vertices[static_cast<std::size_t>(corner)];
       if ((vertex - middle).squaredNorm() > (point - middle).squaredNorm()) point = vertex;
-      if (counts) box_.extend(vertex);
+    }
+  }
+  return points;
+}
+
+MeshInside::MeshInside(const TriangleMesh& mesh) {
+  const std::vector<std::array<int, 3>> triangles = corners_by_position(mesh);
+  MeshShells shells = find_shells(triangles, mesh.vertices);
+  is_closed_ = shells.are_closed;
+  roles_ = std::move(shells.roles);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!roles_[i].counts()) continue;
+    has_inside_ = true;
+    for (const int corner : triangles[i]) {
+      box_.extend(mesh.vertices[static_cast<std::size_t>(corner)]);
     }
   }
 }

@@ -28,17 +28,17 @@ inline const std::array<Eigen::Vector3d, 8> kRayDirections = {
      {-0.9012347, 0.1765432, -0.3876543},
      {-0.2109876, -0.6543213, -0.7198765}}};
 
-// The inside of a mesh and its connected components. Triangles are connected where they share a
-// vertex position. The inside is where the winding number of any closed surface
+// One vertex of every connected component, as MeshTree::component_points() says. Triangles are
+// connected where they share a vertex position.
+std::vector<Eigen::Vector3d> component_points(const TriangleMesh& mesh);
+
+// The inside of a mesh, which is where the winding number of any closed surface
 // (shells.h) is not zero, whatever others count there: so where closed parts overlap that are
 // turned differently, and in a sealed hollow.
 class MeshInside {
  public:
   explicit MeshInside(const TriangleMesh& mesh);
 
-  // One vertex of every component: the farthest from the middle of the mesh, as most often it is
-  // far from what the mesh touches.
-  std::span<const Eigen::Vector3d> component_points() const { return points_; }
   // Whether any triangle is of a closed surface, and whether all are.
   bool has_inside() const { return has_inside_; }
   bool is_closed() const { return is_closed_; }
@@ -62,7 +62,6 @@ class MeshInside {
  private:
   std::vector<TriangleRole> roles_;  // of each triangle
   Eigen::AlignedBox3d box_;          // of those that count
-  std::vector<Eigen::Vector3d> points_;
   bool has_inside_ = false;
   bool is_closed_ = true;
 };

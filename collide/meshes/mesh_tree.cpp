@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collide/meshes/mesh_tree.h"
 
+#include "collide/meshes/mesh_inside.h"
 #include "collide/meshes/mesh_search.h"
 #include "collide/meshes/packed_mesh.h"
 #include "collide/meshes/triangle_leaves.h"
@@ -43,6 +44,8 @@ SphereTree tree_of(const std::vector<Triangle>& triangles) {
 MeshTree::MeshTree(const TriangleMesh& mesh)
     : triangles_(triangles_of(mesh)),
       tree_(tree_of(triangles_)),
+      component_points_(internal::component_points(mesh)),
+      node_boxes_(std::make_shared<const internal::NodeBoxes>(*this)),
       packed_(std::make_shared<const internal::PackedMesh>(triangles_, tree_.spheres())) {}
 
 bool collides(const SphereTree& a, const Pose& world_from_a, const MeshTree& b,

@@ -25,11 +25,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace spherule {
 
 namespace internal {
+class NodeBoxes;
 class PackedMesh;
 }  // namespace internal
 
@@ -47,12 +49,17 @@ class MeshTree {
     return triangles_[static_cast<std::size_t>(index)];
   }
 
-  // For queries.
+  // For queries: one vertex of every connected component, the farthest from the middle of the mesh,
+  // as most often it is far from what the mesh touches.
+  std::span<const Eigen::Vector3d> component_points() const { return component_points_; }
+  const internal::NodeBoxes& node_boxes() const { return *node_boxes_; }
   const internal::PackedMesh& packed() const { return *packed_; }
 
  private:
   std::vector<std::array<Eigen::Vector3d, 3>> triangles_;
   SphereTree tree_;  // sphere i is the sphere of triangle i
+  std::vector<Eigen::Vector3d> component_points_;
+  std::shared_ptr<const internal::NodeBoxes> node_boxes_;
   std::shared_ptr<const internal::PackedMesh> packed_;
 };
 

@@ -8,6 +8,7 @@
 #include "collide/search/nearest_first.h"
 #include "collide/search/query.h"
 #include "collide/search/traversal.h"
+#include "collide/solids/convex.h"
 #include "geometry/point_triangle.h"
 #include "spheretree/sphere_tree.h"
 
@@ -93,23 +94,27 @@ class FindDeepest {
     const double depth =
         inside ? add_down(reach, to_surface.lower) : sub_down(reach, to_surface.upper);
     const std::int32_t leaf = tree_.sphere_index(index);
-    if (sphere_ >= 0 && (depth < depth_ || (depth == depth_ && leaf > sphere_))) return true;
-    depth_ = depth;
+    if (sphere_ >= 0 && (depth < contact_.depth || (depth == contact_.depth && leaf > sphere_))) return true;
     sphere_ = leaf;
-    in_mesh_ = inside ? center : gaps.to_triangle(to_surface.nearest.a).closest;
+    const Vector3d nearest = gaps.to_triangle(to_surface.nearest.a).closest;
+    const Vector3d way = inside ? center - nearest : nearest - center;
+    contact_.depth = depth;
+    if (way.norm() > 0.0) contact_.normal = way.normalized();
+    contact_.on_a = center + sphere.radius * contact_.normal;
+    contact_.on_b = nearest - solid_.inflation() * contact_.normal;
+    contact_.common = inside ? center : nearest;
     return true;
   }
   std::int32_t sphere() const { return sphere_; }
-  double depth() const { return depth_; }
-  const Vector3d& in_mesh() const { return in_mesh_; }
+  // In the mesh's frame.
+  const internal::ConvexContact& contact() const { return contact_; }
 
  private:
   const SphereTree& tree_;
   const SolidMesh& solid_;
   const SpheresInside& spheres_;
   std::int32_t sphere_ = -1;
-  double depth_ = 0.0;
-  Vector3d in_mesh_ = Vector3d::Zero();
+  internal::ConvexContact contact_;
 };
 
 }  // namespace
@@ -119,8 +124,7 @@ SolidMesh::SolidMesh(const TriangleMesh& mesh) : SolidMesh(mesh, mesh.vertex_err
 SolidMesh::SolidMesh(const TriangleMesh& mesh, double inflation)
     : mesh_(mesh),
       inflation_(inflation),
-      inside_(std::make_shared<const internal::MeshInside>(mesh)),
-      node_boxes_(std::make_shared<const internal::NodeBoxes>(mesh_)) {}
+      inside_(std::make_shared<const internal::MeshInside>(mesh)) {}
 
 bool SolidMesh::is_closed() const {
   return inside_->is_closed();
@@ -167,14 +171,14 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
   return result;
 }
 
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const SolidMesh& solid, const Pose& world_from_solid) {
   if (!collides(tree, world_from_tree, solid, world_from_solid)) return std::nullopt;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
   const SpheresInside spheres(tree, solid, pose);
   FindDeepest query(tree, solid, spheres);
   internal::search_tree(tree, query);
-  return SolidContact{query.sphere(), query.depth(), world_from_solid * query.in_mesh()};
+  return internal::placed_contact({query.sphere(), -1}, query.contact(), world_from_solid);
 }
 
 }  // namespace spherule

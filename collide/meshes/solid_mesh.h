@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Where a set of spheres touches a solid, and how deep.
+// Spheres against a mesh with its inside.
 //
 // @code{.cpp}
-// #include <spherule/collide/solids/primitive.h>
 // #include <spherule/collide/meshes/solid_mesh.h>
 // #include <spherule/spheretree/sphere_tree.h>
 // #include <cassert>
-// #include <vector>
 //
-// const std::vector<spherule::Sphere> spheres{{{0, 0, 3}, 1}, {{0, 0, 0.75}, 1}};
-// const auto floor = spherule::HalfSpace{};
-// const std::optional<spherule::SolidContact> contact =
-//     deepest_contact(spherule::build_tree(spheres), {}, floor, {});
-// assert(contact && contact->sphere == 1);
-// assert(contact->overlap_depth > 0.249 && contact->overlap_depth <= 0.25);
+// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+// const spherule::SolidMesh solid(tetrahedron);
+// const std::vector<spherule::Sphere> spheres{{{0.2, 0.2, 0.2}, 0.01}};
+// const spherule::SphereTree inside = spherule::build_tree(spheres);
+// assert(solid.is_closed() && collides(inside, {}, solid, {}));
+// assert(!collides(inside, {}, solid.mesh(), {}));  // it touches no triangle
 // @endcode
 
 #include "collide/meshes/mesh_tree.h"
@@ -32,38 +31,8 @@
 
 namespace spherule {
 
-// Where a set of spheres touches a solid, and how deep.
-struct SolidContact {
-  std::int32_t sphere = -1;  // index into SphereTree::spheres()
-  // At least this far the sphere has to be moved for the two to part, in exact arithmetic under
-  // exactly the given poses, rounded downward: below zero where rounding alone may have made them
-  // touch. In the unit of the tree.
-  double overlap_depth = 0.0;
-  // A point of both, up to rounding: the sphere's centre where it is in the solid, otherwise the
-  // point of the solid that is nearest to it.
-  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
-};
-
-}  // namespace spherule
-
-// Spheres against a mesh with its inside.
-//
-// @code{.cpp}
-//
-// const spherule::TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-//                                          {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-// const spherule::SolidMesh solid(tetrahedron);
-// const std::vector<spherule::Sphere> spheres{{{0.2, 0.2, 0.2}, 0.01}};
-// const spherule::SphereTree inside = spherule::build_tree(spheres);
-// assert(solid.is_closed() && collides(inside, {}, solid, {}));
-// assert(!collides(inside, {}, solid.mesh(), {}));  // it touches no triangle
-// @endcode
-
-namespace spherule {
-
 namespace internal {
 class MeshInside;
-class NodeBoxes;
 }  // namespace internal
 
 // A mesh with its inside, as an obstacle. Immutable; threads may share it.
@@ -90,7 +59,6 @@ class SolidMesh {
 
   // For queries.
   const internal::MeshInside& inside() const { return *inside_; }
-  const internal::NodeBoxes& node_boxes() const { return *node_boxes_; }
   // Copies of a solid share it, and no others do.
   const std::shared_ptr<const internal::MeshInside>& shared_inside() const { return inside_; }
 
@@ -101,7 +69,6 @@ class SolidMesh {
   MeshTree mesh_;
   double inflation_;
   std::shared_ptr<const internal::MeshInside> inside_;
-  std::shared_ptr<const internal::NodeBoxes> node_boxes_;
 };
 
 // Whether a set of spheres and a solid, rigidly placed, overlap.
@@ -128,7 +95,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
 
 // The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
 // Examines every sphere that touches. Allocates.
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
+std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
                                             const SolidMesh& solid, const Pose& world_from_solid);
 
 }  // namespace spherule

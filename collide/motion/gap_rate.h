@@ -30,6 +30,10 @@ namespace spherule::internal {
 class GapRate {
  public:
   GapRate(const SphereTree& a, const Motion& motion_a, const SphereTree& b, const Motion& motion_b)
+      : GapRate(a.reach(), motion_a, b.reach(), motion_b) {}
+
+  // Of bodies that reach so far from the origins of their frames; infinity for an unbounded one.
+  GapRate(double reach_a, const Motion& motion_a, double reach_b, const Motion& motion_b)
       : sides_{Side(motion_a), Side(motion_b)},
         straight_(distance_upper(motion_a.displacement(), motion_b.displacement())) {
     const Eigen::Vector3d start = motion_a.anchor() - motion_b.anchor();
@@ -45,8 +49,8 @@ class GapRate {
     const double turn =
         distance_upper(motion_a.angle() * motion_a.axis(), motion_b.angle() * motion_b.axis()) +
         8.0 * kUnitRoundoff * (wa + wb);
-    const double as_one = std::min(turn * sides_[0].radius_of(a) + wb * apart,
-                                   turn * sides_[1].radius_of(b) + wa * apart);
+    const double as_one = std::min(turn * sides_[0].radius_of(reach_a) + wb * apart,
+                                   turn * sides_[1].radius_of(reach_b) + wa * apart);
     together_ = (straight_ + as_one) * kUp;
     // pose_at() places the frames no farther apart than the reference points with both arms.
     const double reference_arms =
@@ -67,6 +71,9 @@ class GapRate {
     const double apart = straight_ * tau + std::min(turning * tau, circles);
     return std::min(apart, together_ * tau) * kUp;
   }
+
+  // Nor do any two points of the bodies, of which one may be unbounded.
+  double approach(double tau) const { return together_ * tau * kUp; }
 
   // A time in which two spheres with these centres do not use up a gap > 0. Huge where nothing
   // moves: no divisor is zero, for every upper bound of a norm is positive.
@@ -105,9 +112,9 @@ class GapRate {
     // What turning can move, or nothing for a body that does not turn.
     double circle(double rho) const { return speed == 0.0 ? 0.0 : rho; }
 
-    // Upper bound of the distance of any centre of the tree from the reference point, the same for
-    // every tree over the same spheres.
-    double radius_of(const SphereTree& tree) const { return tree.reach() + norm_upper(reference); }
+    // Upper bound of the distance of any point from the reference point: for trees the same for all
+    // over the same spheres.
+    double radius_of(double reach) const { return reach + norm_upper(reference); }
 
     double speed;
     Eigen::Vector3d reference;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 
@@ -25,6 +26,12 @@ class Deadline {
     if (!limited_ || tests < next_) return false;
     next_ = tests + kInterval;
     return std::chrono::steady_clock::now() >= end_;
+  }
+
+  // Until then; the largest duration if there is no limit.
+  std::chrono::nanoseconds left() const {
+    if (!limited_) return std::chrono::nanoseconds::max();
+    return std::max(end_ - std::chrono::steady_clock::now(), std::chrono::steady_clock::duration(0));
   }
 
  private:

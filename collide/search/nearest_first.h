@@ -32,7 +32,7 @@ struct GapInterval {
 //   Node                        what waits; std::uint64_t key(node) orders those of equal gaps;
 //   bool is_leaf(node)
 //   Opened open(node)           an inner node's children: their number is .count;
-//   void gaps(opened, gaps)     of the children, within `error` of the exact ones;
+//   void gaps(node, opened, gaps)  of the children, within `error` of the exact ones;
 //   Node child(node, opened, i)
 //   GapInterval leaf_gap(leaf)  both within `error` of true bounds;
 //   SpherePair pair(leaf)       what it stands for.
@@ -45,7 +45,8 @@ class NearestFirst {
       : space_(space), error_(error), request_(request), deadline_(request.max_time) {}
 
   DistanceResult run(Node root, double root_gap) {
-    if (request_.max_node_tests == 0 || deadline_.passed(0)) return result_;
+    result_.complete = request_.max_node_tests > 0 && !deadline_.passed(0);
+    if (!result_.complete) return result_;
     result_.cost.node_tests = 1;
     if (space_.is_leaf(root)) {
       ++result_.cost.leaf_tests;
@@ -57,8 +58,9 @@ class NearestFirst {
       const Node node = queue_.top().node;
       const auto opened = space_.open(node);
       const auto tests = static_cast<std::uint64_t>(opened.count);
-      if (tests > request_.max_node_tests - result_.cost.node_tests) break;
-      if (deadline_.passed(result_.cost.node_tests)) break;
+      result_.complete = tests <= request_.max_node_tests - result_.cost.node_tests &&
+                         !deadline_.passed(result_.cost.node_tests);
+      if (!result_.complete) break;
       queue_.pop();
       result_.cost.node_tests += tests;
       visit_children(node, opened);
@@ -96,7 +98,7 @@ class NearestFirst {
   template <class Opened>
   void visit_children(Node node, const Opened& opened) {
     double gaps[SphereTree::kMaxBranching];
-    space_.gaps(opened, gaps);
+    space_.gaps(node, opened, gaps);
     for (std::int32_t i = 0; i < opened.count; ++i) {
       const Node child = space_.child(node, opened, i);
       if (space_.is_leaf(child)) {
@@ -128,7 +130,8 @@ class NearestFirst {
 
 // The node pairs of TreePair as a space of NearestFirst. A leaf test has
 //   GapInterval interval(pair)   what the distance of two leaves lies between, each end within
-//                                gap_error() of RelativePose.
+//                                gap_error() of RelativePose;
+//   double node_gap(pair)        only where it has one: what no leaves below are nearer than.
 template <class LeafTest>
 class PairSpace {
  public:
@@ -143,8 +146,14 @@ class PairSpace {
   }
   bool is_leaf(NodePair pair) const { return trees_.is_leaf_pair(pair); }
   OpenedPair open(NodePair pair) const { return trees_.open(pair); }
-  void gaps(const OpenedPair& opened, double* gaps) const {
+  void gaps(NodePair pair, const OpenedPair& opened, double* gaps) const {
     sphere_gaps(trees_.spheres(opened.side), opened.first, opened.count, opened.sphere, gaps);
+    if constexpr (requires { leaves_.node_gap(pair); }) {
+      for (std::int32_t i = 0; i < opened.count; ++i) {
+        const NodePair below = child(pair, opened, i);
+        if (!is_leaf(below)) gaps[i] = std::max(gaps[i], leaves_.node_gap(below));
+      }
+    }
   }
   NodePair child(NodePair pair, const OpenedPair& opened, std::int32_t i) const {
     return pair.with(opened.side, opened.first + i);
@@ -205,7 +214,7 @@ class SphereSpace {
     const auto index = static_cast<std::size_t>(node);
     return {tree_.first_child(index), tree_.child_count(index)};
   }
-  void gaps(const Opened& opened, double* gaps) const {
+  void gaps(Node, const Opened& opened, double* gaps) const {
     for (std::int32_t i = 0; i < opened.count; ++i) gaps[i] = gap(opened.first + i);
   }
   Node child(Node, const Opened& opened, std::int32_t i) const { return opened.first + i; }

@@ -11,11 +11,15 @@
 // assert(result.verdict == spherule::Verdict::kUnknown && !result.complete);
 // @endcode
 
+#include <Eigen/Core>
+
+#include <array>
 #include <chrono>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace spherule {
@@ -77,6 +81,41 @@ struct DistanceResult {
   double upper = std::numeric_limits<double>::infinity();
   SpherePair nearest;  // the pair that gives `upper`
   QueryCost cost;
+  bool complete = true;  // no limit of tests or time cut the search short
+};
+
+// What shows that two bodies touch.
+enum class ContactKind {
+  kLeaves,     // two leaves: spheres of trees, triangles of meshes, solids
+  kTriangles,  // of two covered meshes: triangles under two spheres
+  kInside,     // no leaves touch, but one body, or a component of it, lies inside the other
+};
+
+// A triangle of each of two meshes.
+struct TrianglePair {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+};
+
+// One contact of two bodies, in the world.
+struct Contact {
+  ContactKind kind = ContactKind::kLeaves;
+  // Which leaves: indices of spheres, for two covered meshes of their covers; of triangles; 0 for a
+  // solid. Where a sphere touches a SolidMesh, and for kInside, -1 stands for the inside.
+  SpherePair leaves;
+  // Lower bound of the penetration depth of these two leaves, in exact arithmetic under exactly the
+  // given poses: so far, at least, one of them has to be moved for the two to part; for kInside one
+  // body. In the unit of the bodies, rounded downward; below zero where rounding alone may have made
+  // them touch. Nothing is said of how far the bodies have to be moved to part.
+  double penetration_depth = 0.0;
+  // Of length 1, from a to b: the direction in which b leaves a soonest, up to rounding.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  // Up to rounding: a point of each leaf on its boundary, the one of a the deepest in b, and that of
+  // b in a; and a point of both, for spheres in the middle.
+  std::array<Eigen::Vector3d, 2> nearest_points{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  // For kTriangles, as touching_triangles() says.
+  std::optional<TrianglePair> triangles;
 };
 
 // Throws Error for a number that is no clearance: negative, not a number, or beyond 1e15.

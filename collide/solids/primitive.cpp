@@ -44,39 +44,6 @@ class FindSphere {
   bool found_ = false;
 };
 
-// The sphere that is deepest among those that touch; of equally deep ones the first by index.
-template <class Field>
-class FindDeepest {
- public:
-  FindDeepest(const SphereTree& tree, const SolidPose<Field>& pose) : tree_(tree), pose_(pose) {}
-
-  bool afford(std::int32_t, std::int32_t) const { return true; }
-  bool enters(std::int32_t node) const {
-    const Sphere sphere = tree_.sphere(static_cast<std::size_t>(node));
-    return pose_.may_touch(sphere) && pose_.gap(sphere) <= gap_ + 2.0 * pose_.gap_error();
-  }
-  bool leaf(std::int32_t node) {
-    const auto index = static_cast<std::size_t>(node);
-    const Sphere sphere = tree_.sphere(index);
-    if (!pose_.touches(sphere)) return true;
-    const double gap = pose_.gap(sphere);
-    const std::int32_t leaf = tree_.sphere_index(index);
-    if (gap < gap_ || (gap == gap_ && leaf < sphere_)) {
-      gap_ = gap;
-      sphere_ = leaf;
-    }
-    return true;
-  }
-  double gap() const { return gap_; }
-  std::int32_t sphere() const { return sphere_; }
-
- private:
-  const SphereTree& tree_;
-  const SolidPose<Field>& pose_;
-  double gap_ = std::numeric_limits<double>::infinity();
-  std::int32_t sphere_ = -1;
-};
-
 // Collects the spheres that touch, up to the limits of a request, and the smallest gap seen.
 template <class Field>
 class CollectSpheres {
@@ -219,19 +186,6 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
     const SphereGaps gaps(tree, pose);
     const internal::SphereSpace space(tree, gaps);
     return internal::NearestFirst(space, pose.gap_error(), request).run(0, space.gap(0));
-  });
-}
-
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
-                                            const Primitive& solid, const Pose& world_from_solid) {
-  return with_field(solid, [&](const auto& field) -> std::optional<SolidContact> {
-    const SolidPose pose(tree, world_from_tree, field, world_from_solid);
-    FindDeepest query(tree, pose);
-    internal::search_tree(tree, query);
-    if (query.sphere() < 0) return std::nullopt;
-    const Sphere& sphere = tree.spheres()[static_cast<std::size_t>(query.sphere())];
-    return SolidContact{query.sphere(), -query.gap() - pose.gap_error(),
-                        world_from_solid * field.nearest(pose.in_solid(sphere.center))};
   });
 }
 

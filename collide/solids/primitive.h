@@ -25,7 +25,6 @@
 
 #include <Eigen/Core>
 
-#include <optional>
 #include <string>
 #include <variant>
 
@@ -92,10 +91,6 @@ bool within(const SphereTree& tree, const Pose& world_from_tree, const Primitive
 // Their separation distance between certified bounds; in `nearest`, `b` is 0.
 DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, const Primitive& solid,
                         const Pose& world_from_solid, const DistanceRequest& request = {});
-
-// The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
-std::optional<SolidContact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
-                                            const Primitive& solid, const Pose& world_from_solid);
 
 // Upper bound of what the exact distance may exceed the clearance by where within() answers true,
 // and collides() for a clearance of 0: about 4e-14 of the size of the scene, which is the reach of

@@ -4,7 +4,7 @@
 #include "collide/contact.h"
 #include "collide/motion/motion.h"
 #include "collide/point_cloud.h"
-#include "collide/solids/solid_within.h"
+#include "collide/shapes.h"
 #include "collide/sweep.h"
 #include "python/bindings/support.h"
 
@@ -105,30 +105,28 @@ py::object distance_of(const py::object& a, const py::object& world_from_a, cons
                      found.cost.leaf_tests);
 }
 
-py::object object_of(const std::optional<Contact>& contact) {
-  if (!contact) return py::none();
+py::object object_of(const Contact& contact) {
   static constexpr const char* kKinds[] = {"spheres", "triangles", "inside"};
   const py::object triangles =
-      contact->triangles ? py::object(py::make_tuple(contact->triangles->a, contact->triangles->b))
-                         : py::object(py::none());
-  return make_result("Contact", kKinds[static_cast<int>(contact->kind)],
-                     py::make_tuple(contact->spheres.a, contact->spheres.b), contact->overlap_depth,
-                     array_of(contact->world_point), triangles);
+      contact.triangles ? py::object(py::make_tuple(contact.triangles->a, contact.triangles->b))
+                        : py::object(py::none());
+  return make_result("Contact", kKinds[static_cast<int>(contact.kind)],
+                     py::make_tuple(contact.leaves.a, contact.leaves.b), contact.penetration_depth,
+                     array_of(contact.position), triangles);
 }
-
-py::object object_of(const std::optional<SolidContact>& contact) {
-  if (!contact) return py::none();
-  return make_result("SolidContact", contact->sphere, contact->overlap_depth,
-                     array_of(contact->world_point));
-}
-
-using AnyContact = std::variant<std::optional<Contact>, std::optional<SolidContact>>;
 
 py::object deepest_of(const py::object& a, const py::object& world_from_a, const py::object& b,
                       const py::object& world_from_b) {
-  const auto found = answer<AnyContact>(placed(a, world_from_a, b, world_from_b), "deepest_contact",
-                                        SPHERULE_QUERY(deepest_contact(a, at_a, b, at_b)));
-  return std::visit([](const auto& contact) { return object_of(contact); }, found);
+  const Placed at = placed(a, world_from_a, b, world_from_b);
+  const auto found = answer<std::optional<Contact>>(
+      at, "deepest_contact", SPHERULE_QUERY(deepest_contact(a, at_a, b, at_b)));
+  if (!found) return py::none();
+  const bool is_of_solid =
+      std::holds_alternative<const SphereTree*>(at.a) &&
+      (std::holds_alternative<const SolidMesh*>(at.b) || std::holds_alternative<Primitive>(at.b));
+  if (!is_of_solid) return object_of(*found);
+  return make_result("SolidContact", found->leaves.a, found->penetration_depth,
+                     array_of(found->position));
 }
 
 #undef SPHERULE_QUERY

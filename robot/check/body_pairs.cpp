@@ -6,8 +6,8 @@
 #include "collide/collide.h"
 #include "collide/kernels/check_plan_source.h"
 #include "collide/meshes/solid_mesh.h"
+#include "collide/shapes.h"
 #include "collide/solids/solid_fields.h"
-#include "collide/solids/solid_within.h"
 #include "robot/model/kinematics.h"
 #include "robot/model/link_paths.h"
 
@@ -331,8 +331,7 @@ std::optional<PairContact> BodyPairs::deepest_contact(std::size_t index,
   const auto between_trees =
       [&](const std::optional<Contact>& found) -> std::optional<PairContact> {
     if (!found) return std::nullopt;
-    return PairContact{found->spheres.a, found->spheres.b, found->overlap_depth,
-                       found->world_point};
+    return PairContact{found->leaves.a, found->leaves.b, found->penetration_depth, found->position};
   };
   const CheckedPair& pair = pairs_[index];
   const CheckedPiece& a = pieces_[static_cast<std::size_t>(pair.piece)];
@@ -361,7 +360,7 @@ std::optional<PairContact> BodyPairs::deepest_contact(std::size_t index,
       return between_trees(found);
     } else {
       if (!found) return std::nullopt;
-      return PairContact{found->sphere, -1, found->overlap_depth, found->world_point};
+      return PairContact{found->leaves.a, -1, found->penetration_depth, found->position};
     }
   });
 }

@@ -87,7 +87,7 @@ struct FalseAlarms {
 
 // Counts the false alarms of a robot's own spheres (Link::trees) among random postures within the
 // limits. A false alarm is a posture that is free by the meshes, insides counted
-// (collide/solids/solid_within.h), in which the spheres of two links overlap that are neither
+// (collide/shapes.h), in which the spheres of two links overlap that are neither
 // allowed nor proved free by `proofs` (null: nothing is proved). Spheres must cover the bodies, as
 // those of cover_robot() do: the meshes of a pair are tested only where its spheres overlap. A
 // posture in which links touch that are allowed to is free. A pair that seems to touch always is

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/rounding.h"
 #include "collide/collide.h"
-#include "collide/solids/solid_within.h"
+#include "collide/shapes.h"
 #include "geometry/median_split.h"
 
 #include <Eigen/Dense>

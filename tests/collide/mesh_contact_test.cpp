@@ -277,8 +277,8 @@ TEST(Contact, OfMeshesIsTheDeepestThatTrianglesConfirm) {
       removed += !pairs.empty();
       continue;
     }
-    ASSERT_LE(contact->overlap_depth,
-              exact_overlap(a, world_from_a, b, world_from_b, contact->spheres));
+    ASSERT_LE(contact->penetration_depth,
+              exact_overlap(a, world_from_a, b, world_from_b, contact->leaves));
     const double slack = collision_slack(a, world_from_a, b, world_from_b);
     int confirmed = 0;
     int deeper = 0;
@@ -287,7 +287,7 @@ TEST(Contact, OfMeshesIsTheDeepestThatTrianglesConfirm) {
           triangles_touch(*mesh_a, pair.a, world_from_a, *mesh_b, pair.b, world_from_b);
       confirmed += is_confirmed;
       const bool is_deeper = exact_overlap(a, world_from_a, b, world_from_b, pair) >
-                             contact->overlap_depth + 2.0 * slack;
+                             contact->penetration_depth + 2.0 * slack;
       deeper += is_deeper;
       const bool counts = is_confirmed || contact->kind == ContactKind::kInside;
       ASSERT_FALSE(is_deeper && counts) << i;

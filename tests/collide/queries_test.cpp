@@ -6,6 +6,7 @@
 #include "collide/contact.h"
 #include "collide/meshes/solid_mesh.h"
 #include "collide/search/relative_pose.h"
+#include "collide/shapes.h"
 #include "collide/solids/primitive.h"
 #include "spheretree/sphere_tree.h"
 #include "tests/soak/scale.h"
@@ -397,10 +398,10 @@ TYPED_TEST(Queries, FindTheDeepestContact) {
     if (!contact) continue;
     ++found;
     const Real depth = -scene.gap();
-    ASSERT_LE(contact->overlap_depth, depth) << i;
-    ASSERT_GE(contact->overlap_depth, depth - 4.0 * scene.slack() - scene.loss) << i;
+    ASSERT_LE(contact->penetration_depth, depth) << i;
+    ASSERT_GE(contact->penetration_depth, depth - 4.0 * scene.slack() - scene.loss) << i;
     // The point is in both.
-    const Sphere point{contact->world_point, 0.0};
+    const Sphere point{contact->position, 0.0};
     double error = 1e-14 * (scene.world_from_shape.translation().template lpNorm<1>() +
                             scene.world_from_tree.translation().template lpNorm<1>()) +
                    10.0 * scene.slack() + scene.loss;
@@ -546,10 +547,10 @@ TEST(Trees, HaveOneDeepestContactWhateverTheirShape) {
       const auto contact = deepest_contact(a, scene.world_from_tree, b, scene.world_from_shape);
       ASSERT_EQ(contact.has_value(), expected.has_value());
       if (!contact) continue;
-      ASSERT_EQ(contact->kind, ContactKind::kSpheres);
-      ASSERT_EQ(contact->spheres, expected->spheres);
-      ASSERT_EQ(contact->overlap_depth, expected->overlap_depth);
-      ASSERT_EQ(contact->world_point, expected->world_point);
+      ASSERT_EQ(contact->kind, ContactKind::kLeaves);
+      ASSERT_EQ(contact->leaves, expected->leaves);
+      ASSERT_EQ(contact->penetration_depth, expected->penetration_depth);
+      ASSERT_EQ(contact->position, expected->position);
     }
   }
 }
@@ -575,7 +576,7 @@ TEST(Primitives, OfEquallyDeepSpheresTheFirstIsTheDeepest) {
   for (const double side : {-1.0, 1.0}) {
     std::vector<Sphere> spheres = {{{0.0, 0.0, 9.0}, 1.0}};
     for (int i = 0; i < 9; ++i) spheres.push_back({{side * i, 0.0, 0.5}, 1.0});
-    EXPECT_EQ(deepest_contact(build_tree(spheres), Pose(), HalfSpace{}, Pose())->sphere, 1);
+    EXPECT_EQ(deepest_contact(build_tree(spheres), Pose(), HalfSpace{}, Pose())->leaves.a, 1);
   }
 }
 

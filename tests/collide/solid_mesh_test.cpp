@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "collide/meshes/mesh_inside.h"
 #include "collide/search/relative_pose.h"
-#include "collide/solids/solid_within.h"
+#include "collide/shapes.h"
 #include "geometry/ray.h"
 #include "spheretree/sphere_tree.h"
 #include "tests/support/effort.h"
@@ -151,7 +151,7 @@ TEST(MeshInside, TakesAnotherRayWhereOneMeetsACorner) {
       const MeshInside inside(mesh);
       const MeshTree tree(mesh);
       ASSERT_TRUE(inside.is_closed());
-      ASSERT_EQ(inside.component_points().size(), 1u);
+      ASSERT_EQ(component_points(mesh).size(), 1u);
       for (const double error : {0.0, 1e-12, 1e-3}) {
         EXPECT_TRUE(inside.contains(tree, Vector3d::Zero(), error));
         EXPECT_TRUE(inside.contains(tree, 0.4 * direction, error));
@@ -180,7 +180,7 @@ TEST(MeshInside, OpenComponentsDoNotCount) {
     const MeshInside inside(mesh);
     EXPECT_TRUE(inside.has_inside());
     EXPECT_FALSE(inside.is_closed());
-    EXPECT_EQ(inside.component_points().size(), 2u);
+    EXPECT_EQ(component_points(mesh).size(), 2u);
     EXPECT_TRUE(inside.contains(MeshTree(mesh), Vector3d::Zero(), 0.0));
     EXPECT_FALSE(inside.contains(MeshTree(mesh), -1.2 * kRayDirections[0], 0.0));
     // So that one of both ways round the flap would take away what the pyramid adds.

@@ -75,7 +75,6 @@ def test_bad_values(call, text):
         (lambda: spherule.simplify(CUBE, max_error="thin"), "max_error"),
         (lambda: spherule.simplify(CUBE, no_such_option=1), "no_such_option"),
         (lambda: spherule.collides(TREE, None, CUBE, None), "b: "),
-        (lambda: spherule.collide(TREE, None, spherule.SolidMesh(CUBE), None), "collide"),
         (lambda: spherule.collide(TREE, None, TREE, None, max_pairs=1.5), "max_pairs"),
         (lambda: spherule.read_mesh(3), "path"),
         (lambda: spherule.with_spheres(TREE, {}), "robot"),
