@@ -96,6 +96,6 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
 // The sphere that is deepest in the solid, up to rounding; none exactly if collides() is false.
 // Examines every sphere that touches. Allocates.
 std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
-                                            const SolidMesh& solid, const Pose& world_from_solid);
+                                       const SolidMesh& solid, const Pose& world_from_solid);
 
 }  // namespace spherule
