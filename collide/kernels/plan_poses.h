@@ -22,7 +22,7 @@
 // (4 n + 16) v W for each rate, which is below the above, 38 n v W, too: 5 times that in all.
 
 #include "collide/kernels/plan_vectors.h"
-#include "collide/kernels/vectors.h"
+#include "collide/search/vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

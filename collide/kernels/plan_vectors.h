@@ -5,7 +5,7 @@
 // plan_kernel_impl.h.
 
 #include "collide/kernels/check_plan.h"
-#include "collide/kernels/vectors.h"
+#include "collide/search/vectors.h"
 
 #include <cstdint>
 #include <type_traits>

@@ -96,11 +96,6 @@ struct alignas(64) KernelQueue {
   std::int32_t nodes[kRoom + 8];
 };
 
-// The eight children of a node, moved.
-struct alignas(32) KernelSpheres {
-  float x[8], y[8], z[8], radius[8];
-};
-
 // Memory of a breadth-first search: for every node of the largest body and one more, its children
 // where they are, and the search for which that was computed.
 struct KernelQueues {

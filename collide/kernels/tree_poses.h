@@ -5,7 +5,7 @@
 // tree_block.h.
 
 #include "collide/kernels/tree_search.h"
-#include "collide/kernels/vectors.h"
+#include "collide/search/vectors.h"
 
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {

@@ -5,7 +5,7 @@
 // tree_block.h.
 
 #include "collide/kernels/tree_kernel.h"
-#include "collide/kernels/vectors.h"
+#include "collide/search/vectors.h"
 
 #include <cstddef>
 
@@ -15,31 +15,6 @@ namespace {
 // The obstacle is opened until its sphere is smaller than this part of the body's: opening the body
 // costs a change of frame. Measured on the workload of bench/, from 0.35 to 1.
 constexpr float kOpenBody = 0.7F;
-
-struct Spheres {
-  Float8 x, y, z, radius;
-};
-
-// To memory, where single lanes are read.
-SPHERULE_INLINE void hold(const Spheres& spheres, KernelSpheres& lanes) {
-  __builtin_memcpy(lanes.x, &spheres.x, sizeof lanes.x);
-  __builtin_memcpy(lanes.y, &spheres.y, sizeof lanes.y);
-  __builtin_memcpy(lanes.z, &spheres.z, sizeof lanes.z);
-  __builtin_memcpy(lanes.radius, &spheres.radius, sizeof lanes.radius);
-}
-
-template <class Lanes>
-SPHERULE_INLINE Spheres spheres_of(const Lanes& node) {
-  return {load(node.x), load(node.y), load(node.z), load(node.radius)};
-}
-
-SPHERULE_INLINE unsigned overlaps(const Spheres& spheres, float x, float y, float z, float radius) {
-  const Float8 dx = spheres.x - x;
-  const Float8 dy = spheres.y - y;
-  const Float8 dz = spheres.z - z;
-  const Float8 limit = spheres.radius + radius;
-  return mask_of(dx * dx + dy * dy + dz * dz <= limit * limit);
-}
 
 // A body's place: columns and origin of its frame in single precision, and by how much its spheres
 // are grown there.

@@ -23,8 +23,8 @@
 // is inside the sphere for sure if the margin is at least 2 (r' - r) and f and 16 v S are in r' -
 // r.
 
-#include "collide/kernels/tree_search.h"
 #include "collide/meshes/packed_mesh.h"
+#include "collide/search/vectors.h"
 
 #include <cstddef>
 

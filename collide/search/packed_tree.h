@@ -29,6 +29,11 @@ struct PackedSphere {
   float radius;
 };
 
+// The eight children of a node, moved.
+struct alignas(32) KernelSpheres {
+  float x[8], y[8], z[8], radius[8];
+};
+
 // The spheres of a tree's nodes, as a search culls with them: for each node the tree's own, or the
 // smallest around the leaves below it where that is smaller (it need not enclose the nodes between,
 // since nothing but leaves decides).

@@ -4,6 +4,8 @@
 // Vectors of eight numbers. Part of all kernels, for the instruction set that SPHERULE_KERNEL
 // names.
 
+#include "collide/search/packed_tree.h"
+
 #include <cstdint>
 
 #ifdef __x86_64__
@@ -46,6 +48,32 @@ SPHERULE_INLINE unsigned mask_of(const Int8& set) {
 #else
   return bits_of_lanes(set);
 #endif
+}
+
+// Eight spheres.
+struct Spheres {
+  Float8 x, y, z, radius;
+};
+
+// To memory, where single lanes are read.
+SPHERULE_INLINE void hold(const Spheres& spheres, KernelSpheres& lanes) {
+  __builtin_memcpy(lanes.x, &spheres.x, sizeof lanes.x);
+  __builtin_memcpy(lanes.y, &spheres.y, sizeof lanes.y);
+  __builtin_memcpy(lanes.z, &spheres.z, sizeof lanes.z);
+  __builtin_memcpy(lanes.radius, &spheres.radius, sizeof lanes.radius);
+}
+
+template <class Lanes>
+SPHERULE_INLINE Spheres spheres_of(const Lanes& node) {
+  return {load(node.x), load(node.y), load(node.z), load(node.radius)};
+}
+
+SPHERULE_INLINE unsigned overlaps(const Spheres& spheres, float x, float y, float z, float radius) {
+  const Float8 dx = spheres.x - x;
+  const Float8 dy = spheres.y - y;
+  const Float8 dz = spheres.z - z;
+  const Float8 limit = spheres.radius + radius;
+  return mask_of(dx * dx + dy * dy + dz * dz <= limit * limit);
 }
 
 }  // namespace
