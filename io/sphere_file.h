@@ -30,8 +30,8 @@
 
 namespace spherule {
 
-// What a Certificate (simplifier/types/simplification.h) says, as stored beside the spheres. Lengths
-// in the unit of the spheres.
+// What a Certificate (simplifier/types/simplification.h) says, as stored beside the spheres.
+// Lengths in the unit of the spheres.
 struct CertificateRecord {
   bool covered = false;
   // Proved bounds on the largest distance from a point of the solid to the union of the spheres.
