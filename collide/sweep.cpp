@@ -141,8 +141,8 @@ class ShapeInstants {
 
   // A gap that is not used up in that time.
   double needed(double time) const {
-    const double way = are_bounded_ ? rate_.approach(of_a_.around, of_b_.around, time)
-                                    : rate_.approach(time);
+    const double way =
+        are_bounded_ ? rate_.approach(of_a_.around, of_b_.around, time) : rate_.approach(time);
     return (clearance_ + reserve_ + way) * (1.0 + 16.0 * kUnitRoundoff);
   }
 

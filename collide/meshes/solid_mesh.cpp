@@ -94,7 +94,8 @@ class FindDeepest {
     const double depth =
         inside ? add_down(reach, to_surface.lower) : sub_down(reach, to_surface.upper);
     const std::int32_t leaf = tree_.sphere_index(index);
-    if (sphere_ >= 0 && (depth < contact_.depth || (depth == contact_.depth && leaf > sphere_))) return true;
+    if (sphere_ >= 0 && (depth < contact_.depth || (depth == contact_.depth && leaf > sphere_)))
+      return true;
     sphere_ = leaf;
     const Vector3d nearest = gaps.to_triangle(to_surface.nearest.a).closest;
     const Vector3d way = inside ? center - nearest : nearest - center;
@@ -172,7 +173,7 @@ DistanceResult distance(const SphereTree& tree, const Pose& world_from_tree, con
 }
 
 std::optional<Contact> deepest_contact(const SphereTree& tree, const Pose& world_from_tree,
-                                            const SolidMesh& solid, const Pose& world_from_solid) {
+                                       const SolidMesh& solid, const Pose& world_from_solid) {
   if (!collides(tree, world_from_tree, solid, world_from_solid)) return std::nullopt;
   const internal::RelativePose pose(tree, world_from_tree, solid.mesh().tree(), world_from_solid);
   const SpheresInside spheres(tree, solid, pose);

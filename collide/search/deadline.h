@@ -31,7 +31,8 @@ class Deadline {
   // Until then; the largest duration if there is no limit.
   std::chrono::nanoseconds left() const {
     if (!limited_) return std::chrono::nanoseconds::max();
-    return std::max(end_ - std::chrono::steady_clock::now(), std::chrono::steady_clock::duration(0));
+    return std::max(end_ - std::chrono::steady_clock::now(),
+                    std::chrono::steady_clock::duration(0));
   }
 
  private:

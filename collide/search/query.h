@@ -105,13 +105,13 @@ struct Contact {
   SpherePair leaves;
   // Lower bound of the penetration depth of these two leaves, in exact arithmetic under exactly the
   // given poses: so far, at least, one of them has to be moved for the two to part; for kInside one
-  // body. In the unit of the bodies, rounded downward; below zero where rounding alone may have made
-  // them touch. Nothing is said of how far the bodies have to be moved to part.
+  // body. In the unit of the bodies, rounded downward; below zero where rounding alone may have
+  // made them touch. Nothing is said of how far the bodies have to be moved to part.
   double penetration_depth = 0.0;
   // Of length 1, from a to b: the direction in which b leaves a soonest, up to rounding.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
-  // Up to rounding: a point of each leaf on its boundary, the one of a the deepest in b, and that of
-  // b in a; and a point of both, for spheres in the middle.
+  // Up to rounding: a point of each leaf on its boundary, the one of a the deepest in b, and that
+  // of b in a; and a point of both, for spheres in the middle.
   std::array<Eigen::Vector3d, 2> nearest_points{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   // For kTriangles, as touching_triangles() says.

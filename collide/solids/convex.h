@@ -4,16 +4,18 @@
 // The leaves of all shapes, and what is proved of two of them. A leaf is a convex core grown by a
 // radius: a sphere is a grown point, a capsule a grown segment, a triangle or a box is grown by 0.
 //
-// Error budget (G4), u = 2^-53. Two leaves are compared in the frame of the first. `size` (S) bounds,
-// for the second as it stands in its own frame, the sum of what both cores reach from their
+// Error budget (G4), u = 2^-53. Two leaves are compared in the frame of the first. `size` (S)
+// bounds, for the second as it stands in its own frame, the sum of what both cores reach from their
 // origins, of both radii and of the distance of the two frames. `error()` is 192 u S.
 //   - Image of the second core: 136 u S (search/relative_pose.h), for points, axes and discs alike.
 //   - From below. For any vector n no point of a core a is nearer to one of a core b than
-//     (least n.x - greatest n.y) / |n|. A projection is a sum of n.p, |n.h| and r |n x m|; the two
-//     err by less than 20 u |n| S; norm, quotient, and the difference from the radii take 8 u S.
+//     (least n.x - greatest n.y) / |n|. A projection is a sum of n.p, of |n.a| for half axes a, and
+//     of r |n x m|; the two err by less than 20 u |n| S; norm, quotient, and the difference from
+//     the radii take 8 u S.
 //   - From above. A point of a core is a sum of corners and half axes with weights: 16 u S for both
-//     cores. That of a disc is made perpendicular to its axis twice, and is its centre for directions
-//     within 2^-40 of the axis, so that it is off the plane by 10 u of the radius. Distance and radii: 8 u S.
+//     cores. That of a disc is made perpendicular to its axis twice, and is its centre for
+//     directions within 2^-40 of the axis, so that it is off the plane by 10 u of the radius.
+//     Distance and radii: 8 u S.
 //   - Half-spaces. n is the normal, which errs by 129 u itself, once more for |x| <= S: twice the
 //     error.
 // So each bound holds whatever directions and points a search comes up with; whether it converges

@@ -18,7 +18,6 @@
 // assert(distance(tree, {}, spherule::HalfSpace{}, below).upper < 0.501);
 // @endcode
 
-#include "collide/meshes/solid_mesh.h"
 #include "collide/search/query.h"
 #include "geometry/pose.h"
 #include "spheretree/sphere_tree.h"
