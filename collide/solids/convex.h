@@ -9,9 +9,9 @@
 // origins, of both radii and of the distance of the two frames. `error()` is 192 u S.
 //   - Image of the second core: 136 u S (search/relative_pose.h), for points, axes and discs alike.
 //   - From below. For any vector n no point of a core a is nearer to one of a core b than
-//     (least n . x - greatest n . y) / |n|. A projection is a sum of n . p, |n . h| and r |n x m|;
-//     the two err by less than 20 u |n| S; norm, quotient, and the difference from the radii take 8
-//     u S.
+//     (least n.x - greatest n.y) / |n|. A projection is a sum of n.p, of |n.a| for half axes a, and
+//     of r |n x m|; the two err by less than 20 u |n| S; norm, quotient, and the difference from
+//     the radii take 8 u S.
 //   - From above. A point of a core is a sum of corners and half axes with weights: 16 u S for both
 //     cores. That of a disc is made perpendicular to its axis twice, and is its centre for
 //     directions within 2^-40 of the axis, so that it is off the plane by 10 u of the radius.

@@ -21,6 +21,7 @@
 // assert(checker.check_config(std::vector{0.5}, scratch));
 // @endcode
 
+#include "collide/meshes/solid_mesh.h"
 #include "collide/solids/primitive.h"
 #include "geometry/pose.h"
 #include "robot/check/robot_checker.h"
