@@ -306,6 +306,8 @@ class WaysOut {
  private:
   static constexpr double kSlack = 1e-12;  // far more than rounding, of the largest coordinate
   static constexpr double kLeastCell = 0x1p-14;
+  static constexpr int kPasses = 3;
+  static constexpr double kAside = 1.5;
   static constexpr std::size_t kMostSpheres = 1000;
   static constexpr std::size_t kMostTests = 100'000'000;  // of a sphere with a cell
 
@@ -319,9 +321,9 @@ class WaysOut {
       if (distance + reach <= sphere.radius) return true;
       if (distance > 0.0 && distance - sphere.radius <= reach) away += from / distance;
     }
-    if (away.norm() > 0.1 && is_way_out(middle, reach, away.normalized())) return true;
+    if (away.norm() > 0.1 && leads_out(middle, reach, away.normalized())) return true;
     for (const Vector3d& direction : directions_) {
-      if (is_way_out(middle, reach, direction)) return true;
+      if (leads_out(middle, reach, direction)) return true;
     }
     if (reach < least_ || tests_ > kMostTests) return false;
     for (int k = 0; k < 8; ++k) {
@@ -329,6 +331,22 @@ class WaysOut {
       if (!has_way_out(middle + sign.cwiseProduct(half), half / 2.0)) return false;
     }
     return true;
+  }
+
+  // A direction, or what is left of it beside the nearest spheres that it leads into.
+  bool leads_out(const Vector3d& middle, double reach, Vector3d direction) {
+    if (is_way_out(middle, reach, direction)) return true;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      for (const Sphere& sphere : spheres_) {
+        ++tests_;
+        const Vector3d from = middle - sphere.center;
+        const double distance = from.norm();
+        if (!(distance > 0.0) || distance - sphere.radius > reach) continue;
+        const double lacking = kAside * reach - from.dot(direction);
+        if (lacking > 0.0) direction += lacking / (distance * distance) * from;
+      }
+    }
+    return direction.norm() > 0.1 && is_way_out(middle, reach, direction.normalized());
   }
 
   bool is_way_out(const Vector3d& middle, double reach, const Vector3d& direction) {
@@ -376,6 +394,35 @@ struct SignedDistance {
            std::min(std::max(across, along), 0.0);
   }
   double operator()(const HalfSpace&) const { return point.z(); }
+};
+
+// The point of a solid that is nearest to another, up to rounding.
+struct NearestPoint {
+  Vector3d point;
+
+  static double within(double x, double most) { return std::clamp(x, -most, most); }
+  // In the ball about a point.
+  Vector3d in_ball(const Vector3d& center, double radius) const {
+    const Vector3d from = point - center;
+    const double distance = from.norm();
+    return distance <= radius ? point : Vector3d(center + radius / distance * from);
+  }
+
+  Vector3d operator()(const Box& box) const {
+    return point.cwiseMax(-box.size / 2.0).cwiseMin(box.size / 2.0);
+  }
+  Vector3d operator()(const SolidSphere& sphere) const {
+    return in_ball(Vector3d::Zero(), sphere.radius);
+  }
+  Vector3d operator()(const Capsule& capsule) const {
+    return in_ball({0.0, 0.0, within(point.z(), capsule.length / 2.0)}, capsule.radius);
+  }
+  Vector3d operator()(const Cylinder& cylinder) const {
+    const double across = std::hypot(point.x(), point.y());
+    const double share = across <= cylinder.radius ? 1.0 : cylinder.radius / across;
+    return {share * point.x(), share * point.y(), within(point.z(), cylinder.length / 2.0)};
+  }
+  Vector3d operator()(const HalfSpace&) const { return point; }
 };
 
 double size_of(const Primitive& primitive) {
@@ -441,6 +488,26 @@ std::optional<double> protrusion_over_primitives(std::span<const LinkShape> shap
                                   256.0 * kUnitRoundoff * size);
     }
     result = std::max(result, least);
+  }
+  return result;
+}
+
+PrimitiveLeak leak_of_primitives(std::span<const LinkShape> shapes, std::span<const Sphere> spheres,
+                                 const Vector3d& near) {
+  PrimitiveLeak result;
+  for (const LinkShape& shape : shapes) {
+    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+    if (primitive == nullptr) continue;
+    const Pose& pose = shape.link_from_shape;
+    const Vector3d point = pose * std::visit(NearestPoint{pose.inverse() * near}, *primitive);
+    const double error = 256.0 * kUnitRoundoff *
+                         (norm_upper(near) + norm_upper(pose.translation()) + size_of(*primitive));
+    double depth = std::numeric_limits<double>::infinity();
+    for (const Sphere& sphere : spheres) {
+      depth = std::min(
+          depth, sub_down(sub_down(distance_lower(point, sphere.center), sphere.radius), error));
+    }
+    if (std::isfinite(depth) && depth > result.depth) result = {depth, point};
   }
   return result;
 }

@@ -127,6 +127,16 @@ std::optional<std::vector<Sphere>> exact_spheres(const LinkDescription& link, Li
 std::optional<double> protrusion_over_primitives(std::span<const LinkShape> shapes,
                                                  std::span<const Sphere> spheres);
 
+// How deep a point of the primitives among the shapes leaks, at least, in exact arithmetic.
+struct PrimitiveLeak {
+  double depth = 0.0;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // up to rounding
+};
+
+// Of the points of the primitives that are nearest to `near`, the one that leaks most.
+PrimitiveLeak leak_of_primitives(std::span<const LinkShape> shapes, std::span<const Sphere> spheres,
+                                 const Eigen::Vector3d& near);
+
 // The largest radius of a sphere, a cylinder or a capsule; 0 where there is none.
 double largest_radius(std::span<const LinkShape> shapes);
 

@@ -236,9 +236,11 @@ Simplification of_mesh(const Task& task) {
   SimplifyOptions options = task.options;
   if (task.chord_error > 0.0) {
     if (task.across <= kErrorsOfUsualLink * options.max_error) complete_lengths(options, {});
-    options.max_error -= task.chord_error;
+    // So that the sum is not above E by a rounding.
+    const auto shrink = [&](double& error) { error = (error - task.chord_error) * kRelativeDown; };
+    shrink(options.max_error);
     for (Zone& zone : options.zones) {
-      if (zone.max_error) *zone.max_error -= task.chord_error;
+      if (zone.max_error) shrink(*zone.max_error);
     }
   }
   Simplification fit = simplify(task.mesh, options);

@@ -512,7 +512,7 @@ TEST_F(PointCloudFileTest, PcdInText) {
   const PointCloudFile cloud = read("a.pcd", pcd_header("ascii", "3") + rows);
   EXPECT_EQ(cloud.points, kWhole);
   EXPECT_GE(cloud.point_error, 1e6 * 0x1p-53);
-  EXPECT_EQ(fault("a.pcd", pcd_header("ascii") + rows), "line 16: more data than the header says");
+  EXPECT_EQ(fault("a.pcd", pcd_header("ascii") + rows), "line 15: more data than the header says");
   EXPECT_EQ(fault("a.pcd", pcd_header("ascii", "4") + rows), "line 16: the file is cut short");
   EXPECT_EQ(fault("a.pcd", pcd_header("ascii", "1") + "7 3.25 1 0 0 0 -2 nan\n"),
             "line 12: point 0 has 8 numbers, not 9");
