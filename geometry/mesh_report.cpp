@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/disjoint_sets.h"
 #include "geometry/median_split.h"
+#include "geometry/mesh_distance.h"
 #include "geometry/self_intersection.h"
+#include "geometry/shells.h"
 #include "geometry/triangle_mesh.h"
 #include "geometry/weld.h"
 
@@ -9,12 +11,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -24,6 +28,8 @@ namespace {
 constexpr double kZeroArea = 1e-14;
 // A volume of this share of area times size is rounding.
 constexpr double kZeroVolume = 1e-12;
+// Of the size of a triangle.
+constexpr double kJustInside = 1e-6;
 
 bool is_degenerate(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
   const auto [a, b, c] = corners_of(mesh, t);
@@ -77,10 +83,52 @@ void count_edges(const TriangleMesh& mesh, DisjointSets& components, std::vector
     report.non_manifold_edges += edge.size() > 2;
     report.misoriented_edges += edge.size() == 2 && turns != 0;
     if (turns != 0) {
-      report.closed = false;
       parts[components.find(static_cast<std::uint32_t>(edge.front().low))].closed = false;
     }
   });
+}
+
+// A part within a larger one adds nothing: one around whose box it has its own, and which contains
+// a point just inside of its largest triangle.
+double volume_inside(const TriangleMesh& mesh, const std::vector<internal::TriangleRole>& roles) {
+  const internal::OuterSides sides = internal::outer_sides(mesh, roles);
+  const std::size_t count = sides.volumes.size();
+  const double all = std::accumulate(sides.volumes.begin(), sides.volumes.end(), 0.0);
+  if (count < 2) return all;
+  struct Largest {
+    double area = -1.0;
+    Eigen::Vector3d inside = Eigen::Vector3d::Zero();
+  };
+  std::vector<Largest> largest(count);
+  std::vector<Eigen::AlignedBox3d> boxes(count);
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    if (sides.turns[i] == 0) continue;
+    std::size_t part = 0;
+    roles[i].for_each_surface(1, [&](std::int32_t surface, int) {
+      part = static_cast<std::size_t>(sides.parts[static_cast<std::size_t>(surface)]);
+    });
+    const auto [a, b, c] = corners_of(mesh, mesh.triangles[i]);
+    for (const Eigen::Vector3d& corner : {a, b, c}) boxes[part].extend(corner);
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    if (!(normal.norm() > largest[part].area)) continue;
+    const double depth = kJustInside * std::sqrt(normal.norm());
+    largest[part] = {normal.norm(),
+                     (a + b + c) / 3.0 - sides.turns[i] * depth * normal.stableNormalized()};
+  }
+  const MeshDistance distance(mesh);
+  const internal::ClosedShells shells(mesh, distance);
+  double volume = 0.0;
+  for (std::size_t part = 0; part < count; ++part) {
+    const auto surrounds = [&](std::int32_t surface) {
+      const auto other = static_cast<std::size_t>(sides.parts[static_cast<std::size_t>(surface)]);
+      return std::pair(sides.volumes[other], part) > std::pair(sides.volumes[part], other) &&
+             boxes[other].contains(boxes[part]);
+    };
+    if (std::ranges::none_of(shells.around(largest[part].inside), surrounds)) {
+      volume += sides.volumes[part];
+    }
+  }
+  return volume;
 }
 
 void add_line(std::ostringstream& out, std::size_t count, const char* one, const char* many,
@@ -112,13 +160,14 @@ MeshReport mesh_report(const TriangleMesh& input, const MeshReportOptions& optio
     report.degenerate_triangles += is_degenerate(mesh, t);
   }
   report.duplicate_triangles = count_duplicates(mesh);
-  report.closed = true;
+  const internal::MeshShells shells = internal::find_shells(mesh);
+  report.closed = shells.are_closed;
+  report.volume = volume_inside(mesh, shells.roles);
   count_edges(mesh, components, parts, report);
   for (const Component& part : parts) {
     if (!part.used) continue;
     ++report.components;
     report.area += part.area;
-    report.volume += part.volume;
     const double rounding = kZeroVolume * part.area * report.box.diagonal().norm();
     report.inverted_components += part.closed && part.volume < -rounding;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/shells.h"
 
+#include "base/disjoint_sets.h"
 #include "geometry/ray.h"
 #include "geometry/self_intersection.h"
 #include "geometry/triangles.h"
@@ -20,85 +21,82 @@
 namespace spherule::internal {
 namespace {
 
-constexpr std::int32_t kOpen = -1;
-
 // Unit vectors along no axis, edge or diagonal that a model is likely to have.
 const std::array<Eigen::Vector3d, 4> kDirections{
     Eigen::Vector3d(0.4517, 0.6293, 0.6323), Eigen::Vector3d(-0.7411, 0.3079, 0.5966),
     Eigen::Vector3d(0.5381, -0.8114, 0.2281), Eigen::Vector3d(-0.2893, -0.4729, -0.8323)};
 
+std::size_t count_surfaces(const std::vector<TriangleRole>& roles) {
+  std::int32_t last = -1;
+  for (const TriangleRole& role : roles) {
+    last = std::max({last, role.shell, role.patch, role.front, role.back});
+  }
+  return static_cast<std::size_t>(last + 1);
+}
+
 }  // namespace
 
 ClosedShells::ClosedShells(const TriangleMesh& mesh, const MeshDistance& distance)
-    : distance_(distance), shell_of_(mesh.triangles.size(), kOpen) {
-  const TriangleMesh welded = weld(mesh);
-  std::vector<std::array<int, 3>> triangles;
-  triangles.reserve(welded.triangles.size());
-  for (const Eigen::Vector3i& t : welded.triangles) triangles.push_back({t[0], t[1], t[2]});
-  const MeshShells found = find_shells(triangles, welded.vertices);
-  is_mesh_closed_ = found.are_balanced;
-  for (std::size_t i = 0; i < shell_of_.size(); ++i) {
-    shell_of_[i] = found.roles[i].shell;
-    shell_count_ = std::max(shell_count_, static_cast<std::size_t>(shell_of_[i] + 1));
-  }
+    : distance_(distance) {
+  MeshShells found = find_shells(weld(mesh));
+  is_mesh_closed_ = found.are_closed;
+  roles_ = std::move(found.roles);
+  surface_count_ = count_surfaces(roles_);
 }
 
-bool ClosedShells::contain(const Eigen::Vector3d& point) const {
-  return !windings(point).empty();
-}
-
-int ClosedShells::winding_number(const Eigen::Vector3d& point) const {
-  int sum = 0;
-  for (const auto& [shell, winding] : windings(point)) sum += winding;
-  return sum;
-}
-
-ClosedShells::Windings ClosedShells::windings(const Eigen::Vector3d& point) const {
-  if (shell_count_ == 0 || !distance_.box().contains(point)) return {};
+std::vector<std::int32_t> ClosedShells::around(const Eigen::Vector3d& point) const {
+  if (surface_count_ == 0 || !distance_.box().contains(point)) return {};
   for (const Eigen::Vector3d& direction : kDirections) {
     if (auto counted = count_along(point, direction)) return *std::move(counted);
   }
   return sum_of_angles(point);
 }
 
-std::optional<ClosedShells::Windings> ClosedShells::count_along(
+std::optional<std::vector<std::int32_t>> ClosedShells::count_along(
     const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const {
   const Ray ray(point, 0.0, direction);
-  Windings crossings;
+  std::vector<std::pair<std::int32_t, int>> crossings;
   const bool is_certain =
       distance_.visit_ray(point, direction, [&](const MeshDistance::Corners& t) {
-        const std::int32_t shell = shell_of_[static_cast<std::size_t>(t.triangle)];
-        if (shell == kOpen) return true;
+        const TriangleRole& role = roles_[static_cast<std::size_t>(t.triangle)];
+        if (!role.counts()) return true;
         const std::optional<int> crossing = ray.crossing({t.a, t.b, t.c});
-        if (crossing.value_or(0) != 0) crossings.emplace_back(shell, *crossing);
+        if (crossing.value_or(0) != 0) {
+          role.for_each_surface(*crossing, [&](std::int32_t surface, int turn) {
+            crossings.emplace_back(surface, turn);
+          });
+        }
         return crossing.has_value();
       });
   if (!is_certain) return std::nullopt;
   std::sort(crossings.begin(), crossings.end());
-  Windings sums;
+  std::vector<std::int32_t> result;
   for (std::size_t i = 0; i < crossings.size();) {
-    const std::int32_t shell = crossings[i].first;
+    const std::int32_t surface = crossings[i].first;
     int sum = 0;
-    for (; i < crossings.size() && crossings[i].first == shell; ++i) sum += crossings[i].second;
-    if (sum != 0) sums.emplace_back(shell, sum);
+    for (; i < crossings.size() && crossings[i].first == surface; ++i) sum += crossings[i].second;
+    if (sum != 0) result.push_back(surface);
   }
-  return sums;
+  return result;
 }
 
-ClosedShells::Windings ClosedShells::sum_of_angles(const Eigen::Vector3d& point) const {
-  std::vector<double> angles(shell_count_, 0.0);
+std::vector<std::int32_t> ClosedShells::sum_of_angles(const Eigen::Vector3d& point) const {
+  std::vector<double> angles(surface_count_, 0.0);
   distance_.visit_all([&](const MeshDistance::Corners& t) {
-    const std::int32_t shell = shell_of_[static_cast<std::size_t>(t.triangle)];
-    if (shell == kOpen) return;
-    angles[static_cast<std::size_t>(shell)] += solid_angle(t.a - point, t.b - point, t.c - point);
+    const TriangleRole& role = roles_[static_cast<std::size_t>(t.triangle)];
+    if (!role.counts()) return;
+    const double angle = solid_angle(t.a - point, t.b - point, t.c - point);
+    role.for_each_surface(1, [&](std::int32_t surface, int turn) {
+      angles[static_cast<std::size_t>(surface)] += turn * angle;
+    });
   });
-  Windings sums;
-  for (std::size_t shell = 0; shell < shell_count_; ++shell) {
-    const long winding = std::lround(angles[shell] / (4.0 * std::numbers::pi));
-    if (winding != 0)
-      sums.emplace_back(static_cast<std::int32_t>(shell), static_cast<int>(winding));
+  std::vector<std::int32_t> result;
+  for (std::size_t surface = 0; surface < surface_count_; ++surface) {
+    if (std::lround(angles[surface] / (4.0 * std::numbers::pi)) != 0) {
+      result.push_back(static_cast<std::int32_t>(surface));
+    }
   }
-  return sums;
+  return result;
 }
 
 namespace {
@@ -155,7 +153,6 @@ class ShellFinder {
 
   MeshShells run() {
     MeshShells result;
-    result.are_balanced = are_balanced_;
     result.roles.resize(triangles_.size());
     std::vector<std::int32_t> of_shell(triangles_.size(), -1), of_patch = of_shell,
                                                                of_cell(2 * triangles_.size(), -1);
@@ -166,7 +163,10 @@ class ShellFinder {
       const auto triangle = static_cast<int>(i);
       const std::size_t shell = shell_of(triangle);
       TriangleRole& role = result.roles[i];
-      if (!is_open_shell_[shell] && remains_[shell]) role.shell = number(of_shell[shell]);
+      const bool is_repeated = is_plain(shell) && !is_first_[i];
+      if (!is_open_shell_[shell] && remains_[shell] && !is_repeated) {
+        role.shell = number(of_shell[shell]);
+      }
       if (is_plain(shell) || !is_first_[i]) continue;
       const OrientedDisjointSets::Place place = patches_.find(triangle);
       const auto patch = static_cast<std::size_t>(place.root);
@@ -221,9 +221,7 @@ class ShellFinder {
   void weigh_shell(std::span<const EdgeUse> uses) {
     int sum = 0;
     for (const EdgeUse& use : uses) sum += use.turn;
-    if (sum == 0) return;
-    is_open_shell_[shell_of(uses[0].triangle)] = 1;
-    are_balanced_ = false;
+    if (sum != 0) is_open_shell_[shell_of(uses[0].triangle)] = 1;
   }
 
   // Those of an edge that do not repeat another triangle.
@@ -298,7 +296,6 @@ class ShellFinder {
   // whether some are left if those are taken away in pairs; whether more than two meet at an edge.
   std::vector<char> cancels_, remains_, has_junction_;
   std::vector<char> is_open_shell_, is_open_patch_;
-  bool are_balanced_ = true;
 };
 
 }  // namespace
@@ -306,6 +303,71 @@ class ShellFinder {
 MeshShells find_shells(const std::vector<std::array<int, 3>>& triangles,
                        std::span<const Vector3d> vertices) {
   return ShellFinder(triangles, vertices).run();
+}
+
+MeshShells find_shells(const TriangleMesh& welded) {
+  std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(welded.triangles.size());
+  for (const Eigen::Vector3i& t : welded.triangles) triangles.push_back({t[0], t[1], t[2]});
+  return find_shells(triangles, welded.vertices);
+}
+
+// Around an edge the sides that face each other are of one cell, so that surfaces of a part have
+// triangles in common. Of its cells the one outside encloses most: all sides that face it, where
+// the others take away their rooms.
+OuterSides outer_sides(const TriangleMesh& welded, const std::vector<TriangleRole>& roles) {
+  const std::size_t count = count_surfaces(roles);
+  const Vector3d center = box_of(welded).center();  // keeps the terms small
+  std::vector<double> volume_of(welded.triangles.size()), enclosed(count, 0.0);
+  std::vector<char> is_cell(count, 0);
+  DisjointSets connected(count);
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    const auto [a, b, c] = corners_of(welded, welded.triangles[i]);
+    volume_of[i] = (a - center).dot((b - center).cross(c - center)) / 6.0;
+    std::optional<std::uint32_t> first;
+    roles[i].for_each_surface(1, [&](std::int32_t surface, int turn) {
+      const auto s = static_cast<std::uint32_t>(surface);
+      enclosed[s] += turn * volume_of[i];
+      connected.unite(first ? *first : s, s);
+      first = s;
+    });
+    for (const std::int32_t cell : {roles[i].front, roles[i].back}) {
+      if (cell >= 0) is_cell[static_cast<std::size_t>(cell)] = 1;
+    }
+  }
+  std::vector<std::int32_t> part_of_root(count, -1), outside(count, -1);
+  OuterSides result;
+  result.parts.resize(count);
+  for (std::uint32_t s = 0; s < count; ++s) {
+    const std::size_t root = connected.find(s);
+    if (part_of_root[root] < 0) {
+      part_of_root[root] = static_cast<std::int32_t>(result.volumes.size());
+      result.volumes.push_back(0.0);
+    }
+    result.parts[s] = part_of_root[root];
+    std::int32_t& best = outside[static_cast<std::size_t>(result.parts[s])];
+    if (is_cell[s] && (best < 0 || enclosed[s] > enclosed[static_cast<std::size_t>(best)])) {
+      best = static_cast<std::int32_t>(s);
+    }
+  }
+  result.turns.assign(roles.size(), 0);
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    const TriangleRole& role = roles[i];
+    if (!role.counts()) continue;
+    const auto surface = static_cast<std::size_t>(std::max({role.shell, role.patch, role.front}));
+    const auto part = static_cast<std::size_t>(result.parts[surface]);
+    const std::int32_t around = outside[part];
+    int& turn = result.turns[i];
+    if (around >= 0) {
+      turn = role.front == around ? 1 : role.back == around ? -1 : 0;
+    } else if (role.patch >= 0) {
+      turn = enclosed[static_cast<std::size_t>(role.patch)] < 0.0 ? -role.turn : role.turn;
+    } else {
+      turn = enclosed[static_cast<std::size_t>(role.shell)] < 0.0 ? -1 : 1;
+    }
+    result.volumes[part] += turn * volume_of[i];
+  }
+  return result;
 }
 
 }  // namespace spherule::internal

@@ -17,53 +17,6 @@
 
 namespace spherule::internal {
 
-// The closed shells of a mesh M, and what they prove to be inside. A shell is a set of triangles
-// connected by shared edges (vertices count as one if they are equal bit for bit) in which every
-// edge is used as often in one direction as in the other. Triangles of parts that are not closed
-// are left out.
-//
-// The winding number of a shell is a whole number that is the same for all points of a component of
-// space without M, and zero for the unbounded one. So a point with another number for any shell is
-// in |M|, whatever other shells count there: also in a sealed hollow, whose inner shell takes away
-// what the outer one gives. It is counted along a ray: each triangle crossed from behind adds one,
-// each from the front takes one away.
-class ClosedShells {
- public:
-  // `distance`, of the same mesh, has to outlive the shells.
-  ClosedShells(const TriangleMesh& mesh, const MeshDistance& distance);
-
-  // Whether the winding number of a shell says that the point, which is not on the surface, is in
-  // |M|. Never true of a point outside, but not of all points of |M|: false in hollows that no
-  // single shell seals, in shells that are double-sided, not turned alike, or have a wall between
-  // rooms, and where parts that share an edge are turned against each other. So it may witness that
-  // a point has to be covered, and must not prove that one need not be: certify() has the flood for
-  // that, which knows no orientation.
-  bool contain(const Eigen::Vector3d& point) const;
-
-  // The sum of the winding numbers of all shells about a point that is not on the surface: of the
-  // mesh, if that is closed.
-  int winding_number(const Eigen::Vector3d& point) const;
-
-  // Whether no edge of the mesh is used more often in one direction than in the other.
-  bool is_mesh_closed() const { return is_mesh_closed_; }
-
- private:
-  // The winding numbers of shells, sorted; zero for those that are not named.
-  using Windings = std::vector<std::pair<std::int32_t, int>>;
-
-  Windings windings(const Eigen::Vector3d& point) const;
-  // Nothing if rounding leaves open whether a ray in this direction crosses some triangle.
-  std::optional<Windings> count_along(const Eigen::Vector3d& point,
-                                      const Eigen::Vector3d& direction) const;
-  // Of all triangles, by their solid angles: linear in their number.
-  Windings sum_of_angles(const Eigen::Vector3d& point) const;
-
-  const MeshDistance& distance_;
-  std::vector<std::int32_t> shell_of_;  // of each triangle; kOpen without one
-  std::size_t shell_count_ = 0;
-  bool is_mesh_closed_ = false;
-};
-
 // For which closed surfaces a triangle counts; -1 for none. Shells, patches and cells have numbers
 // of one sequence.
 struct TriangleRole {
@@ -75,17 +28,27 @@ struct TriangleRole {
 
   bool counts() const { return shell >= 0 || encloses(); }
   bool encloses() const { return patch >= 0 || front >= 0 || back >= 0; }
+  // Calls add(surface, crossing) for each surface, of a line that crosses the triangle as crossing
+  // says: 1 from behind, -1 from the front.
+  template <typename Add>
+  void for_each_surface(int crossing, const Add& add) const {
+    if (shell >= 0) add(shell, crossing);
+    if (patch >= 0) add(patch, crossing * turn);
+    if (front >= 0) add(front, crossing);
+    if (back >= 0) add(back, -crossing);
+  }
 };
 
 // The closed surfaces of a mesh: sets of turned triangles in which every edge is passed as often in
 // one direction as in the other.
 //
-// A shell is a set of triangles connected by shared edges, each as it is turned. Most meshes need
-// no more. But triangles with the same corners turned both ways, as in a double-sided drawing,
-// balance each other whatever the others are, and say nothing; parts that share an edge may take
-// each other's inside away; and a wall between two rooms ends at edges that nothing balances. So of
-// a shell where triangles are turned both ways, where more than two meet at an edge, or which is
-// not closed, more is judged. Of triangles with the same corners only one is taken; then
+// A shell is a set of triangles connected by shared edges, each as it is turned, and once where all
+// are repeated. Most meshes need no more. But triangles with the same corners turned both ways, as
+// in a double-sided drawing, balance each other whatever the others are, and say nothing; parts
+// that share an edge may take each other's inside away; and a wall between two rooms ends at edges
+// that nothing balances. So of a shell where triangles are turned both ways, where more than two
+// meet at an edge, or which is not closed, more is judged. Of triangles with the same corners only
+// one is taken; then
 //   - those that alone share an edge make up a patch and are turned alike. It is closed if every
 //     edge is balanced then, and so never if it has a boundary or cannot be turned alike;
 //   - the sides of triangles that face each other around an edge, next to each other in the order
@@ -101,13 +64,64 @@ struct MeshShells {
   // Whether all triangles with three different corners are of a closed surface; of those that
   // are turned both ways, of a patch or cell.
   bool are_closed = true;
-  // Whether every edge is passed as often in one direction as in the other: all shells are closed.
-  bool are_balanced = true;
 };
 
 // Of triangles with numbered corners and where these lie. Those with equal corners have no role.
 MeshShells find_shells(const std::vector<std::array<int, 3>>& triangles,
                        std::span<const Eigen::Vector3d> vertices);
+// Of a mesh whose equal vertices are one (weld.h).
+MeshShells find_shells(const TriangleMesh& welded);
+
+// The outermost side of the closed surfaces that are connected by shared edges, whichever way their
+// triangles are turned.
+struct OuterSides {
+  // Of every triangle: 1 if it faces outwards as it is turned, -1 if the other way round; 0 if it
+  // is no part of the outermost side (a wall between two rooms, a repeated or an open one).
+  std::vector<int> turns;
+  std::vector<std::int32_t> parts;  // of every closed surface: which of the connected parts
+  std::vector<double> volumes;      // that each part encloses, where it does not intersect itself
+};
+OuterSides outer_sides(const TriangleMesh& welded, const std::vector<TriangleRole>& roles);
+
+// What the closed surfaces of a mesh M (MeshShells, below) prove to be inside. Vertices count as
+// one if they are equal bit for bit.
+//
+// The winding number of a closed surface is a whole number that is the same for all points of a
+// component of space without M, and zero for the unbounded one. So a point with another number for
+// any of them is in |M|, whatever others count there: also in a sealed hollow, whose inner shell
+// takes away what the outer one gives. It is counted along a ray: each triangle crossed from behind
+// adds one, each from the front takes one away.
+class ClosedShells {
+ public:
+  // `distance`, of the same mesh, has to outlive the shells.
+  ClosedShells(const TriangleMesh& mesh, const MeshDistance& distance);
+
+  // Whether the winding number of a closed surface says that the point, which is not on the
+  // surface, is in |M|. Never true of a point outside, but not of all points of |M|: false in
+  // hollows that no single surface seals, as where parts only intersect each other. Triangles that
+  // are there several times, or turned either way, change nothing.
+  bool contain(const Eigen::Vector3d& point) const { return !around(point).empty(); }
+
+  // The closed surfaces, sorted, whose winding number is not zero about a point that is on none.
+  std::vector<std::int32_t> around(const Eigen::Vector3d& point) const;
+
+  // Whether every triangle that is not reduced to a segment is of a closed surface.
+  bool is_mesh_closed() const { return is_mesh_closed_; }
+  // Of every triangle.
+  const std::vector<TriangleRole>& roles() const { return roles_; }
+
+ private:
+  // Nothing if rounding leaves open whether a ray in this direction crosses some triangle.
+  std::optional<std::vector<std::int32_t>> count_along(const Eigen::Vector3d& point,
+                                                       const Eigen::Vector3d& direction) const;
+  // Of all triangles, by their solid angles: linear in their number.
+  std::vector<std::int32_t> sum_of_angles(const Eigen::Vector3d& point) const;
+
+  const MeshDistance& distance_;
+  std::vector<TriangleRole> roles_;
+  std::size_t surface_count_ = 0;
+  bool is_mesh_closed_ = false;
+};
 
 // Disjoint sets of which every element is turned like the one that stands for its set (+1) or the
 // other way round (-1).

@@ -116,12 +116,15 @@ struct MeshReport {
   // triangles lie side by side that the pairs of them and of the boxes around several of them to
   // examine are more than 2^24 + 256 times the triangles.
   bool self_intersections_stopped = false;
-  // Every edge is used as often in one direction as in the other, so that the winding number of a
-  // point is a whole number, and one that is not zero proves the point to be inside.
+  // Every triangle with three different corners is of a closed surface, whichever way triangles
+  // are turned, so that the mesh has an inside: all that is not connected to infinity.
   bool closed = false;
   Eigen::AlignedBox3d box;
   double area = 0.0;
-  double volume = 0.0;  // signed; meaningful if closed
+  // Of the inside of the closed surfaces, sealed hollows included. Not negative, and the same
+  // whichever way triangles are turned and however often they are there; parts that intersect, or
+  // a surface that intersects itself, count what they have in common more than once.
+  double volume = 0.0;
 };
 
 // What is examined.

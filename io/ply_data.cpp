@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -15,7 +16,32 @@ namespace {
 // Of elements, and of properties of an element; a name is compared with all before it.
 constexpr std::size_t kMaxNames = 1000;
 
+struct Range {
+  double least;
+  double most;
+};
+
+// Of a type of whole numbers.
+Range range_of(NumberType type) {
+  const double values = std::exp2(8.0 * static_cast<double>(size_of(type)));
+  const bool is_signed =
+      type == NumberType::kInt8 || type == NumberType::kInt16 || type == NumberType::kInt32;
+  return is_signed ? Range{-values / 2.0, values / 2.0 - 1.0} : Range{0.0, values - 1.0};
+}
+
+bool is_in_range(double value, NumberType type) {
+  const Range range = range_of(type);
+  return value >= range.least && value <= range.most && value == std::floor(value);
+}
+
 }  // namespace
+
+bool is_not_finite(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  std::string lower(word.substr(0, 9));
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower == "nan" || lower.starts_with("nan(") || lower == "inf" || lower == "infinity";
+}
 
 PlyData::PlyData(std::string_view bytes, const std::string& subject)
     : bytes_(bytes), in_(bytes, subject) {
@@ -136,15 +162,26 @@ std::string PlyData::item() const {
   return element_->name + " " + std::to_string(number_);
 }
 
-double PlyData::next_in_text() {
+std::string_view PlyData::next_word() {
   const std::string_view token = is_line_begun_ ? in_.token_on_line() : in_.token();
   is_line_begun_ = true;
   if (token.empty()) fail(item() + " has too few numbers");
-  return in_.number(token);
+  return token;
 }
 
-double PlyData::next(NumberType type) {
-  if (is_text()) return next_in_text();
+double PlyData::next(NumberType type, NonFinite non_finite) {
+  if (is_text()) {
+    const std::string_view word = next_word();
+    if (non_finite == NonFinite::kRead && type >= NumberType::kFloat && is_not_finite(word)) {
+      return std::nan("");
+    }
+    const double value = in_.number(word);
+    if (type < NumberType::kFloat && !is_in_range(value, type)) {
+      fail(in_quotes(word) + " is not a whole number from " + number_text(range_of(type).least) +
+           " to " + number_text(range_of(type).most) + ", as its type says");
+    }
+    return value;
+  }
   const std::size_t begin = at_;
   if (bytes_.size() - begin < size_of(type)) fail("the file is cut short in " + item());
   at_ += size_of(type);
@@ -170,7 +207,13 @@ void PlyData::next_list(const PlyProperty& property, std::vector<std::int64_t>& 
 
 void PlyData::skip(const PlyProperty& property) {
   const std::size_t count = property.count_type ? next_list_size(property) : 1;
-  for (std::size_t i = 0; i < count; ++i) next(property.type);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_text()) {
+      next_word();
+    } else {
+      next(property.type);
+    }
+  }
 }
 
 void PlyData::skip(const PlyElement& element) {
@@ -179,7 +222,7 @@ void PlyData::skip(const PlyElement& element) {
   });
 }
 
-std::vector<Eigen::Vector3d> PlyData::read_points(const PlyElement& element) {
+std::vector<Eigen::Vector3d> PlyData::read_points(const PlyElement& element, NonFinite non_finite) {
   const auto is_axis = [](const PlyProperty& p) {
     return !p.count_type && (p.name == "x" || p.name == "y" || p.name == "z");
   };
@@ -191,7 +234,7 @@ std::vector<Eigen::Vector3d> PlyData::read_points(const PlyElement& element) {
     Eigen::Vector3d& point = points.emplace_back(Eigen::Vector3d::Zero());
     for (const PlyProperty& p : element.properties) {
       if (is_axis(p)) {
-        point[p.name[0] - 'x'] = next(p.type);
+        point[p.name[0] - 'x'] = next(p.type, non_finite);
       } else {
         skip(p);
       }

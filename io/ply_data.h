@@ -28,6 +28,12 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
+// Whether a word stands for what is no number or not finite ("nan", "-inf").
+bool is_not_finite(std::string_view word);
+
+// What of numbers in text that are not finite; in binary form they are always read.
+enum class NonFinite { kRefused, kRead };
+
 // The header of a PLY file (Turk, "The PLY Polygon File Format", 1994), then its numbers one after
 // the other, in text or binary form. In text each item stands on a line of its own. Every fault is
 // an Error that names the file and the line, or the byte.
@@ -50,17 +56,19 @@ class PlyData {
     }
   }
 
-  // The next number of the item; finite if the file is text.
-  double next(NumberType type);
+  // The next number of the item; finite and in the range of its type if the file is text.
+  double next(NumberType type) { return next(type, NonFinite::kRefused); }
   std::int64_t next_integer(NumberType type);
   // The list that comes next, or its length alone.
   void next_list(const PlyProperty& property, std::vector<std::int64_t>& list);
   std::size_t next_list_size(const PlyProperty& property);
+  // Whatever stands there instead of numbers, if the file is text.
   void skip(const PlyProperty& property);
 
   // All items of an element: without their values, or as points by their properties x, y and z.
   void skip(const PlyElement& element);
-  std::vector<Eigen::Vector3d> read_points(const PlyElement& element);
+  std::vector<Eigen::Vector3d> read_points(const PlyElement& element,
+                                           NonFinite non_finite = NonFinite::kRefused);
   void expect_end();
 
   [[noreturn]] void fail(const std::string& reason) const;
@@ -74,7 +82,8 @@ class PlyData {
 
   void begin_item(const PlyElement& element, std::size_t number);
   void end_item();
-  double next_in_text();
+  std::string_view next_word();  // in text form
+  double next(NumberType type, NonFinite non_finite);
   std::string item() const;  // the name of the current one
 
   std::string_view bytes_;

@@ -522,6 +522,12 @@ class GltfReader {
       const std::optional<std::uint64_t> mesh = document_.index(entry, "mesh");
       if (!mesh) continue;
       if (entry.contains("skin")) document_.fail("a mesh with a skin, which is not supported");
+      const Json* const extensions = document_.member(entry, "extensions");
+      if (extensions != nullptr && extensions->contains("EXT_mesh_gpu_instancing")) {
+        document_.fail(
+            "a mesh that the extension EXT_mesh_gpu_instancing shows in many places, which is not "
+            "supported");
+      }
       const std::vector<Affine> chain = chain_of(node);
       for (TriangleMesh part : primitives_of(*mesh)) {
         budget_.take(part);

@@ -42,14 +42,10 @@ constexpr std::array<std::string_view, 8> kUnsupported = {"surf", "curv", "call"
 
 void read_vertex(TextScanner& in, TriangleMesh& mesh) {
   add_vertex(in, mesh);
-  int more = 0;
-  double weight = 1.0;
-  for (std::string_view token = in.token_on_line(); !token.empty(); token = in.token_on_line()) {
-    const double value = in.number(token);
-    if (++more == 1) weight = value;
-  }
-  // One more number is a weight, three are a colour.
-  if (more == 1 && weight != 1.0) in.fail("a vertex with a weight other than 1");
+  // One more number is a weight, three are a colour, which is not used.
+  const std::string_view weight = in.token_on_line();
+  if (weight.empty() || !in.token_on_line().empty()) return;
+  if (in.number(weight) != 1.0) in.fail("a vertex with a weight other than 1");
 }
 
 // A corner is "vertex", "vertex/texture", "vertex//normal" or "vertex/texture/normal"; it counts

@@ -166,9 +166,10 @@ Certificate proved(const TriangleMesh& mesh, const MeshDistance& distance,
         distance, shells, clearance, to_prove, options.protrusion_tolerance * diagonal);
   }
   if (options.volume && !spheres.empty() && shells.is_mesh_closed()) {
-    result.volume_ratio = internal::estimate_volume_ratio(mesh, spheres);
+    result.volume_ratio = internal::estimate_volume_ratio(mesh, shells.roles(), spheres);
     if (options.external != nullptr) {
-      const internal::EstimatedVolume filled = internal::estimate_filled_volume(mesh, external);
+      const internal::EstimatedVolume filled =
+          internal::estimate_filled_volume(mesh, shells.roles(), external);
       result.filled_volume = filled.volume;
       result.filled_volume_error = filled.error;
     }

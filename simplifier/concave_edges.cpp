@@ -2,6 +2,7 @@
 #include "simplifier/concave_edges.h"
 
 #include "geometry/self_intersection.h"
+#include "geometry/shells.h"
 #include "geometry/weld.h"
 
 #include <algorithm>
@@ -71,20 +72,23 @@ std::vector<Edge> concave_edges(const TriangleMesh& mesh) {
     const auto [a, b, c] = corners_of(mesh, t);
     volume += (a - origin).dot((b - origin).cross(c - origin));
   }
-  const double outwards = volume < 0.0 ? -1.0 : 1.0;
-  // With an area, and once each.
+  const std::vector<int> turns =
+      internal::outer_sides(mesh, internal::find_shells(mesh).roles).turns;
+  // With an area, once each, and turned outwards: open parts like the mesh as a whole.
   std::vector<Eigen::Vector3i> triangles;
   std::vector<Vector3d> normals;
   std::set<std::array<int, 3>> seen;
-  for (const Eigen::Vector3i& t : mesh.triangles) {
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    Eigen::Vector3i t = mesh.triangles[i];
     std::array<int, 3> corners{t[0], t[1], t[2]};
     std::ranges::sort(corners);
     if (!seen.insert(corners).second) continue;
+    if (turns[i] < 0 || (turns[i] == 0 && volume < 0.0)) std::swap(t[1], t[2]);
     const std::array<Vector3d, 3> corner = corners_of(mesh, t);
     const Vector3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     if (!(cross.norm() > 0.0)) continue;
     triangles.push_back(t);
-    normals.emplace_back(outwards * cross.normalized());
+    normals.emplace_back(cross.normalized());
   }
   const auto vertex = [&](int v) -> const Vector3d& {
     return mesh.vertices[static_cast<std::size_t>(v)];

@@ -27,7 +27,7 @@ class SolidDistance {
 
   SurfaceDistance to_surface(const Eigen::Vector3d& point) const { return surface_(point); }
   bool is_inside(const Eigen::Vector3d& point) const {
-    return shells_.is_mesh_closed() && shells_.winding_number(point) != 0;
+    return shells_.is_mesh_closed() && shells_.contain(point);
   }
   // No point of the piece is farther from that triangle: distance to a convex set is convex, so its
   // maximum stands at a corner.

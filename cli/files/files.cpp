@@ -203,7 +203,8 @@ FileKind recognize(const std::filesystem::path& path) {
   if (kind != FileKind::kUnknown) return kind;
   const bool may_be_table =
       std::find(kTableEndings.begin(), kTableEndings.end(), ending) != kTableEndings.end();
-  if (may_be_table && is_table(bytes)) return FileKind::kTable;
+  const bool is_cloud = ending == ".pcd" && bytes.find("FIELDS") != std::string::npos;
+  if (is_cloud || (may_be_table && is_table(bytes))) return FileKind::kTable;
   return has_mesh_ending(path) ? FileKind::kMesh : FileKind::kUnknown;
 }
 

@@ -82,7 +82,7 @@ std::string describe_filling(const RobotCover& cover) {
   double most = 0.0;
   double slack = 0.0;
   for (const LinkCover& link : cover.links) {
-    if (!link.fit) continue;
+    if (!link.fit || link.triangles == 0) continue;  // spheres have nothing to fill
     const ExternalSpheres& external = link.fit->external;
     least = std::min(least, external.min_external_diameter);
     most = std::max(most, external.min_external_diameter);
@@ -212,15 +212,30 @@ FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDe
   }
 }
 
+// Of a pair's proof: in proportion to the effort of covers, but for a first part; all of it from
+// the default effort on.
+LinkPairOptions pair_options(const RobotCoverOptions& options) {
+  constexpr int kFirstPart = 4;  // in units of effort
+  const int whole = RobotCoverOptions{}.effort;
+  const auto share = [&](std::size_t boxes) {
+    return boxes * static_cast<std::size_t>(kFirstPart + std::min(options.effort, whole)) /
+           static_cast<std::size_t>(kFirstPart + whole);
+  };
+  LinkPairOptions result;
+  result.boxes = share(result.boxes);
+  result.undecided_boxes = share(result.undecided_boxes);
+  result.seed = options.seed;
+  result.threads = options.threads;
+  result.stop = options.stop;
+  result.progress = options.progress;
+  return result;
+}
+
 void FalseAlarmRun::prove(const RobotCoverOptions& options, MeasuredCover& result) const {
   if (proofs_ == PairProofs::kNone) return;
   const auto start = std::chrono::steady_clock::now();
-  result.pairs =
-      std::make_shared<const LinkPairs>(prove_link_pairs(robot_.model, result.bodies,
-                                                         {.seed = options.seed,
-                                                          .threads = options.threads,
-                                                          .stop = options.stop,
-                                                          .progress = options.progress}));
+  result.pairs = std::make_shared<const LinkPairs>(
+      prove_link_pairs(robot_.model, result.bodies, pair_options(options)));
   result.pair_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.pairs_interrupted = options.stop.stop_requested();

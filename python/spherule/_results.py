@@ -73,7 +73,7 @@ class MeshReport(Record):
     """Low and high corner, shape (2, 3)."""
     area: float
     volume: float
-    """Signed; meaningful if closed."""
+    """Of the inside, whichever way triangles are turned."""
     text: str
 
     def __str__(self) -> str:

@@ -155,6 +155,17 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
   const Certificate around = certify(*part.mesh, part.spheres, {.threads = options.threads});
   audit.certificate = within_chord_error(around, part.chord_error);
   Certificate& of_mesh = *audit.certificate;
+  const internal::PrimitiveLeak leak = internal::leak_of_primitives(
+      link_shapes(link, options.geometry), part.spheres, of_mesh.deepest_leak);
+  if (!of_mesh.covered && leak.depth > of_mesh.uncovered_depth.lower) {
+    of_mesh.solid_depth.lower = of_mesh.uncovered_depth.lower = leak.depth;
+    of_mesh.deepest_leak = leak.point;
+  }
+  const auto exact =
+      internal::protrusion_over_primitives(link_shapes(link, options.geometry), part.spheres);
+  if (exact && of_mesh.protrusion_over_mesh) {
+    of_mesh.protrusion_over_mesh->upper = std::min(of_mesh.protrusion_over_mesh->upper, *exact);
+  }
   if (!of_mesh.covered &&
       internal::lie_in_single_spheres(link_shapes(link, options.geometry), part.spheres)) {
     of_mesh.covered = true;

@@ -10,9 +10,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -25,13 +28,6 @@ namespace {
 
 // Chord error of the meshes around curved primitives.
 constexpr double kChordError = LinkMeshOptions{}.chord_error;
-
-bool has_curved_shapes(const LinkDescription& link, LinkGeometry geometry) {
-  return std::ranges::any_of(link_shapes(link, geometry), [](const LinkShape& shape) {
-    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
-    return primitive != nullptr && !std::holds_alternative<Box>(*primitive);
-  });
-}
 
 // `first` are the first links of the same shapes.
 void find_equal(std::vector<LinkParts>& parts, const std::vector<std::size_t>& first) {
@@ -50,6 +46,22 @@ void find_equal(std::vector<LinkParts>& parts, const std::vector<std::size_t>& f
 
 }  // namespace
 
+double largest_radius(std::span<const LinkShape> shapes) {
+  struct Radius {
+    double operator()(const Box&) const { return 0.0; }
+    double operator()(const HalfSpace&) const { return 0.0; }
+    double operator()(const SolidSphere& sphere) const { return sphere.radius; }
+    double operator()(const Cylinder& cylinder) const { return cylinder.radius; }
+    double operator()(const Capsule& capsule) const { return capsule.radius; }
+  };
+  double largest = 0.0;
+  for (const LinkShape& shape : shapes) {
+    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+    if (primitive != nullptr) largest = std::max(largest, std::visit(Radius{}, *primitive));
+  }
+  return largest;
+}
+
 std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const LinkSpheres> spheres,
                                 LinkGeometry geometry, std::vector<std::string>* unknown) {
   std::vector<LinkParts> parts;
@@ -60,7 +72,7 @@ std::vector<LinkParts> parts_of(const RobotDescription& robot, std::span<const L
                      parts.size(),
                      parts.size(),
                      link_mesh(link, {.geometry = geometry, .chord_error = kChordError}),
-                     has_curved_shapes(link, geometry) ? kChordError : 0.0,
+                     largest_radius(link_shapes(link, geometry)) > 0.0 ? kChordError : 0.0,
                      {}});
   }
   if (std::none_of(parts.begin(), parts.end(), [](const auto& part) { return part.mesh; })) {
@@ -259,9 +271,8 @@ bool is_subset(const LinkShape& shape, const Sphere& sphere) {
 // The nerve of the spheres (one vertex for each, a simplex for those that have a point in common)
 // has the homology of their union. Where no sphere overlaps more than two others its components are
 // paths, cycles and single triangles. None of these encloses a cavity: that takes triangles which
-// form a closed surface, each vertex of which has three neighbours at least. So all of the space
-// outside of the spheres is connected, and no point of it is inside of what they hold (G1).
-bool enclose_no_cavity(std::span<const Sphere> spheres) {
+// form a closed surface, each vertex of which has three neighbours at least.
+bool overlap_two_others_at_most(std::span<const Sphere> spheres) {
   return std::ranges::all_of(spheres, [&](const Sphere& sphere) {
     const auto overlapping = std::ranges::count_if(
         spheres, [&](const Sphere& other) { return possibly_overlap(sphere, other); });
@@ -269,7 +280,237 @@ bool enclose_no_cavity(std::span<const Sphere> spheres) {
   });
 }
 
+// Divides the box around the spheres into cells until each lies in one sphere or has a direction in
+// which all of its points that are in no sphere can go straight on without end. A point gets away
+// from the centre of a sphere all the way, and so never into it, if it does at first; and a sphere
+// that far from the way does not meet it.
+class WaysOut {
+ public:
+  explicit WaysOut(std::span<const Sphere> spheres) : spheres_(spheres), box_(box_of(spheres)) {
+    const double size = box_.min().cwiseAbs().cwiseMax(box_.max().cwiseAbs()).maxCoeff();
+    slack_ = kSlack * size;
+    least_ = kLeastCell * box_.diagonal().norm();
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          if (x != 0 || y != 0 || z != 0) directions_.push_back(Vector3d(x, y, z).normalized());
+        }
+      }
+    }
+  }
+
+  bool lead_from_everywhere() {
+    return spheres_.size() <= kMostSpheres && has_way_out(box_.center(), box_.sizes() / 2.0);
+  }
+
+ private:
+  static constexpr double kSlack = 1e-12;  // far more than rounding, of the largest coordinate
+  static constexpr double kLeastCell = 0x1p-14;
+  static constexpr int kPasses = 3;
+  static constexpr double kAside = 1.5;
+  static constexpr std::size_t kMostSpheres = 1000;
+  static constexpr std::size_t kMostTests = 100'000'000;  // of a sphere with a cell
+
+  bool has_way_out(const Vector3d& middle, const Vector3d& half) {
+    const double reach = half.norm() + slack_;
+    tests_ += spheres_.size();
+    Vector3d away = Vector3d::Zero();
+    for (const Sphere& sphere : spheres_) {
+      const Vector3d from = middle - sphere.center;
+      const double distance = from.norm();
+      if (distance + reach <= sphere.radius) return true;
+      if (distance > 0.0 && distance - sphere.radius <= reach) away += from / distance;
+    }
+    if (away.norm() > 0.1 && leads_out(middle, reach, away.normalized())) return true;
+    for (const Vector3d& direction : directions_) {
+      if (leads_out(middle, reach, direction)) return true;
+    }
+    if (reach < least_ || tests_ > kMostTests) return false;
+    for (int k = 0; k < 8; ++k) {
+      const Vector3d sign(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
+      if (!has_way_out(middle + sign.cwiseProduct(half), half / 2.0)) return false;
+    }
+    return true;
+  }
+
+  // A direction, or what is left of it beside the nearest spheres that it leads into.
+  bool leads_out(const Vector3d& middle, double reach, Vector3d direction) {
+    if (is_way_out(middle, reach, direction)) return true;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      for (const Sphere& sphere : spheres_) {
+        ++tests_;
+        const Vector3d from = middle - sphere.center;
+        const double distance = from.norm();
+        if (!(distance > 0.0) || distance - sphere.radius > reach) continue;
+        const double lacking = kAside * reach - from.dot(direction);
+        if (lacking > 0.0) direction += lacking / (distance * distance) * from;
+      }
+    }
+    return direction.norm() > 0.1 && is_way_out(middle, reach, direction.normalized());
+  }
+
+  bool is_way_out(const Vector3d& middle, double reach, const Vector3d& direction) {
+    return std::ranges::all_of(spheres_, [&](const Sphere& sphere) {
+      ++tests_;
+      const Vector3d from = middle - sphere.center;
+      const double along = from.dot(direction);
+      if (along >= reach) return true;
+      return (from - along * direction).norm() > sphere.radius + reach;
+    });
+  }
+
+  std::span<const Sphere> spheres_;
+  Eigen::AlignedBox3d box_;
+  double slack_ = 0.0;
+  double least_ = 0.0;
+  std::vector<Vector3d> directions_;
+  std::size_t tests_ = 0;
+};
+
+// If so, all of the space outside of the spheres is connected, and no point of it is inside of what
+// they hold (G1).
+bool enclose_no_cavity(std::span<const Sphere> spheres) {
+  return overlap_two_others_at_most(spheres) || WaysOut(spheres).lead_from_everywhere();
+}
+
+// How far a point is from a convex solid about the origin; within it, less the distance to its
+// surface. Up to rounding.
+struct SignedDistance {
+  Vector3d point;
+
+  double operator()(const Box& box) const {
+    const Vector3d beyond = point.cwiseAbs() - box.size / 2.0;
+    return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
+  }
+  double operator()(const SolidSphere& sphere) const { return point.norm() - sphere.radius; }
+  double operator()(const Capsule& capsule) const {
+    const double beyond = std::max(std::abs(point.z()) - capsule.length / 2.0, 0.0);
+    return std::hypot(point.x(), point.y(), beyond) - capsule.radius;
+  }
+  double operator()(const Cylinder& cylinder) const {
+    const double across = std::hypot(point.x(), point.y()) - cylinder.radius;
+    const double along = std::abs(point.z()) - cylinder.length / 2.0;
+    return std::hypot(std::max(across, 0.0), std::max(along, 0.0)) +
+           std::min(std::max(across, along), 0.0);
+  }
+  double operator()(const HalfSpace&) const { return point.z(); }
+};
+
+// The point of a solid that is nearest to another, up to rounding.
+struct NearestPoint {
+  Vector3d point;
+
+  static double within(double x, double most) { return std::clamp(x, -most, most); }
+  // In the ball about a point.
+  Vector3d in_ball(const Vector3d& center, double radius) const {
+    const Vector3d from = point - center;
+    const double distance = from.norm();
+    return distance <= radius ? point : Vector3d(center + radius / distance * from);
+  }
+
+  Vector3d operator()(const Box& box) const {
+    return point.cwiseMax(-box.size / 2.0).cwiseMin(box.size / 2.0);
+  }
+  Vector3d operator()(const SolidSphere& sphere) const {
+    return in_ball(Vector3d::Zero(), sphere.radius);
+  }
+  Vector3d operator()(const Capsule& capsule) const {
+    return in_ball({0.0, 0.0, within(point.z(), capsule.length / 2.0)}, capsule.radius);
+  }
+  Vector3d operator()(const Cylinder& cylinder) const {
+    const double across = std::hypot(point.x(), point.y());
+    const double share = across <= cylinder.radius ? 1.0 : cylinder.radius / across;
+    return {share * point.x(), share * point.y(), within(point.z(), cylinder.length / 2.0)};
+  }
+  Vector3d operator()(const HalfSpace&) const { return point; }
+};
+
+double size_of(const Primitive& primitive) {
+  struct Size {
+    double operator()(const Box& box) const { return box.size.norm(); }
+    double operator()(const SolidSphere& sphere) const { return sphere.radius; }
+    double operator()(const Cylinder& cylinder) const { return cylinder.radius + cylinder.length; }
+    double operator()(const Capsule& capsule) const { return capsule.radius + capsule.length; }
+    double operator()(const HalfSpace&) const { return 0.0; }
+  };
+  return std::visit(Size{}, primitive);
+}
+
 }  // namespace
+
+std::optional<std::vector<Sphere>> exact_spheres(const LinkDescription& link, LinkGeometry geometry,
+                                                 double padding) {
+  std::vector<Sphere> spheres;
+  for (const LinkShape& shape : link_shapes(link, geometry)) {
+    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+    if (primitive == nullptr || !std::holds_alternative<SolidSphere>(*primitive)) return {};
+    require_primitive(*primitive, subject_of(link.name));
+    spheres.push_back({shape.link_from_shape.translation(),
+                       sum_up(std::get<SolidSphere>(*primitive).radius, padding)});
+    if (!is_usable(spheres.back())) return {};
+  }
+  std::ranges::stable_sort(spheres, std::ranges::greater{}, &Sphere::radius);
+  std::vector<Sphere> kept;
+  for (const Sphere& sphere : spheres) {
+    const auto holds = [&](const Sphere& other) {
+      return other == sphere || certainly_encloses(other, sphere);
+    };
+    if (std::ranges::none_of(kept, holds)) kept.push_back(sphere);
+  }
+  if (kept.empty() || !enclose_no_cavity(kept)) return {};
+  return kept;
+}
+
+// What a sphere about a point at the signed distance d of a convex solid has furthest from it is at
+// d + r. The point in the frame of the solid is off by 41 u of its distance from the frame's origin
+// (pose.h); the rest is a dozen operations.
+std::optional<double> protrusion_over_primitives(std::span<const LinkShape> shapes,
+                                                 std::span<const Sphere> spheres) {
+  double result = 0.0;
+  for (const Sphere& sphere : spheres) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const LinkShape& shape : shapes) {
+      const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+      if (primitive == nullptr) return {};
+      const auto* const inner = std::get_if<SolidSphere>(primitive);
+      const Vector3d& origin = shape.link_from_shape.translation();  // exactly
+      if (inner != nullptr) {
+        const double away = origin == sphere.center
+                                ? sphere.radius
+                                : add_up(distance_upper(origin, sphere.center), sphere.radius);
+        least = std::min(least, away <= inner->radius ? 0.0 : sub_up(away, inner->radius));
+        continue;
+      }
+      const Vector3d point = shape.link_from_shape.inverse() * sphere.center;
+      const double size =
+          norm_upper(sphere.center) + norm_upper(origin) + sphere.radius + size_of(*primitive);
+      least = std::min(least, std::visit(SignedDistance{point}, *primitive) + sphere.radius +
+                                  256.0 * kUnitRoundoff * size);
+    }
+    result = std::max(result, least);
+  }
+  return result;
+}
+
+PrimitiveLeak leak_of_primitives(std::span<const LinkShape> shapes, std::span<const Sphere> spheres,
+                                 const Vector3d& near) {
+  PrimitiveLeak result;
+  for (const LinkShape& shape : shapes) {
+    const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
+    if (primitive == nullptr) continue;
+    const Pose& pose = shape.link_from_shape;
+    const Vector3d point = pose * std::visit(NearestPoint{pose.inverse() * near}, *primitive);
+    const double error = 256.0 * kUnitRoundoff *
+                         (norm_upper(near) + norm_upper(pose.translation()) + size_of(*primitive));
+    double depth = std::numeric_limits<double>::infinity();
+    for (const Sphere& sphere : spheres) {
+      depth = std::min(
+          depth, sub_down(sub_down(distance_lower(point, sphere.center), sphere.radius), error));
+    }
+    if (std::isfinite(depth) && depth > result.depth) result = {depth, point};
+  }
+  return result;
+}
 
 bool lie_in_single_spheres(std::span<const LinkShape> shapes, std::span<const Sphere> spheres) {
   std::vector<std::size_t> holders;

@@ -110,9 +110,32 @@ TriangleMesh mesh_around(const Primitive& primitive, double chord_error,
 
 // Whether every shape is a primitive that lies in a single one of the spheres, in exact arithmetic,
 // and the spheres that hold them enclose no cavity: then these cover the shapes and their inside
-// (G1), without any tessellation. False may also mean that this is not proved: it is not where a
-// shape is a mesh, nor where one of the spheres that hold them overlaps more than two others of
-// these. The spheres are usable.
+// (G1), without any tessellation. False may also mean that this is not proved; it never is where a
+// shape is a mesh. The spheres are usable.
 bool lie_in_single_spheres(std::span<const LinkShape> shapes, std::span<const Sphere> spheres);
+
+// The spheres that a link is made of, each grown by the padding, without those within another:
+// nothing else covers the link as closely (G1, G2). Nothing where a shape is no sphere, or where it
+// is not proved that they enclose no cavity.
+std::optional<std::vector<Sphere>> exact_spheres(const LinkDescription& link, LinkGeometry geometry,
+                                                 double padding);
+
+// No point of the spheres is further from all shapes than this, in exact arithmetic. Nothing where
+// a shape is a mesh.
+std::optional<double> protrusion_over_primitives(std::span<const LinkShape> shapes,
+                                                 std::span<const Sphere> spheres);
+
+// How deep a point of the primitives among the shapes leaks, at least, in exact arithmetic.
+struct PrimitiveLeak {
+  double depth = 0.0;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // up to rounding
+};
+
+// Of the points of the primitives that are nearest to `near`, the one that leaks most.
+PrimitiveLeak leak_of_primitives(std::span<const LinkShape> shapes, std::span<const Sphere> spheres,
+                                 const Eigen::Vector3d& near);
+
+// The largest radius of a sphere, a cylinder or a capsule; 0 where there is none.
+double largest_radius(std::span<const LinkShape> shapes);
 
 }  // namespace spherule::internal

@@ -26,13 +26,18 @@ namespace {
 
 // Of a link's box diagonal: how far apart rounding leaves what was one vertex.
 constexpr double kCrack = 1e-6;
+// Up to such a radius, a quarter of kChordErrorOfError takes few triangles.
+constexpr double kErrorsOfUsualRadius = 1000.0;
 
 // What one cover is made for: links with the same shapes, lengths and no zones, or a single one.
 struct Task {
   std::vector<std::size_t> links;  // indices
-  TriangleMesh mesh;
+  TriangleMesh mesh{};             // empty where there are spheres
+  std::vector<Sphere> spheres{};   // what the links are made of, where that is nothing else
+  std::span<const LinkShape> shapes;
+  double chord_error = 0.0;  // of the mesh, if shapes are curved
   SimplifyOptions options;
-  double across = 0.0;  // the diagonal of the mesh's box
+  double across = 0.0;  // the diagonal of the box of the mesh or spheres
   std::string doubt{};  // about its size; mostly empty
 };
 
@@ -127,7 +132,8 @@ std::vector<Task> tasks_of(const RobotDescription& robot, const RobotCoverOption
         continue;
       }
     }
-    tasks.push_back({.links = {i}, .mesh = {}, .options = std::move(own)});
+    tasks.push_back(
+        {.links = {i}, .shapes = link_shapes(link, options.geometry), .options = std::move(own)});
   }
   return tasks;
 }
@@ -143,10 +149,19 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
     Task& task = tasks[i];
     const LinkDescription& link = robot.links[task.links.front()];
     const double max_error = task.options.max_error;
-    task.mesh = *link_mesh(link, {.geometry = options.geometry,
-                                  .chord_error = kChordErrorOfError * max_error,
-                                  .weld = options.weld});
-    task.across = internal::box_of(task.mesh).diagonal().norm();
+    if (auto spheres = internal::exact_spheres(link, options.geometry, task.options.padding)) {
+      task.spheres = *std::move(spheres);
+      task.across = internal::box_of(task.spheres).diagonal().norm();
+    } else {
+      const double radius = internal::largest_radius(task.shapes);
+      const double tightest = tightest_error(task.options.zones, max_error);
+      const double chord_error =
+          (radius <= kErrorsOfUsualRadius * tightest ? 0.25 : 1.0) * kChordErrorOfError * tightest;
+      task.mesh = *link_mesh(
+          link, {.geometry = options.geometry, .chord_error = chord_error, .weld = options.weld});
+      if (radius > 0.0) task.chord_error = chord_error;
+      task.across = internal::box_of(task.mesh).diagonal().norm();
+    }
     const std::string fault = internal::size_fault(task.across, max_error);
     require(fault.empty(), internal::subject_of(link.name), fault);
   });
@@ -160,9 +175,10 @@ std::vector<Task> read_links(const RobotDescription& robot, const RobotCoverOpti
 }
 
 std::vector<std::string> warnings_of(const Task& task, const Simplification& fit, double weld) {
-  const MeshReport report = mesh_report(task.mesh, {.self_intersections = false});
   std::vector<std::string> warnings;
   if (!task.doubt.empty()) warnings.push_back(task.doubt);
+  if (!task.spheres.empty()) return warnings;
+  const MeshReport report = mesh_report(task.mesh, {.self_intersections = false});
   if (!report.closed) {
     std::ostringstream text;
     text
@@ -183,11 +199,71 @@ std::vector<std::string> warnings_of(const Task& task, const Simplification& fit
   return warnings;
 }
 
+// Spheres are their own solid, and their own cover: they protrude by what rounding the padding
+// added.
+Simplification of_spheres(const Task& task) {
+  Simplification fit;
+  fit.options = task.options;
+  complete_lengths(fit.options, {});
+  fit.external = {.spheres = {},
+                  .box = internal::box_of(task.spheres),
+                  .min_external_diameter = fit.options.min_external_diameter,
+                  .padding = task.options.padding,
+                  .concave_edges = {}};
+  fit.cover.spheres = task.spheres;
+  const double over_shapes = *internal::protrusion_over_primitives(task.shapes, task.spheres);
+  const double rounding = task.options.padding == 0.0
+                              ? over_shapes
+                              : std::max(0.0, sub_up(over_shapes, task.options.padding));
+  Certificate& certificate = fit.certificate;
+  certificate.covered = true;
+  certificate.protrusion_over_simplified_max = rounding;
+  certificate.protrusion_in_zones.assign(task.options.zones.size(), rounding);
+  certificate.protrusion_over_mesh = Bounds{0.0, over_shapes};
+  if (task.options.padding == 0.0) certificate.volume_ratio = 1.0;
+  certificate.filled_volume = certificate.filled_volume_error = 0.0;
+  certificate.sphere_count = task.spheres.size();
+  return fit;
+}
+
+// No D of its own is chosen for a smaller E, unless the link is so large that a larger one may be.
+constexpr double kErrorsOfUsualLink = 200.0;
+
+// The spheres may protrude from the mesh around curved shapes by so much less than from these as
+// the mesh does itself.
+Simplification of_mesh(const Task& task) {
+  SimplifyOptions options = task.options;
+  if (task.chord_error > 0.0) {
+    if (task.across <= kErrorsOfUsualLink * options.max_error) complete_lengths(options, {});
+    // So that the sum is not above E by a rounding.
+    const auto shrink = [&](double& error) { error = (error - task.chord_error) * kRelativeDown; };
+    shrink(options.max_error);
+    for (Zone& zone : options.zones) {
+      if (zone.max_error) shrink(*zone.max_error);
+    }
+  }
+  Simplification fit = simplify(task.mesh, options);
+  if (task.chord_error == 0.0) return fit;
+  fit.options.max_error = task.options.max_error;
+  fit.options.zones = task.options.zones;
+  const auto grow = [&](double& protrusion) { protrusion = add_up(protrusion, task.chord_error); };
+  Certificate& certificate = fit.certificate;
+  grow(*certificate.protrusion_over_simplified_max);
+  for (double& protrusion : certificate.protrusion_in_zones) grow(protrusion);
+  Bounds& over_mesh = *certificate.protrusion_over_mesh;
+  grow(over_mesh.upper);
+  if (const auto exact = internal::protrusion_over_primitives(task.shapes, fit.cover.spheres)) {
+    over_mesh.upper = std::min(over_mesh.upper, *exact);
+  }
+  return fit;
+}
+
 LinkCover cover_link(const std::string& link, const Task& task, double weld) {
   const auto start = std::chrono::steady_clock::now();
   LinkCover cover;
   cover.link = link;
-  internal::of_link(link, [&] { cover.fit = simplify(task.mesh, task.options); });
+  internal::of_link(link,
+                    [&] { cover.fit = task.spheres.empty() ? of_mesh(task) : of_spheres(task); });
   cover.spheres = cover.fit->cover.spheres;
   cover.triangles = task.mesh.triangles.size();
   cover.vertex_error = task.mesh.vertex_error;

@@ -154,7 +154,8 @@ struct LinkCover {
   std::vector<Sphere> spheres = {};  // empty for a link without geometry
   // Of the fit and the proof; absent for a link without geometry.
   std::optional<Simplification> fit = std::nullopt;
-  std::size_t triangles = 0;  // of the link's mesh, tessellated primitives included
+  // Of the link's mesh, tessellated primitives included; 0 for a link of spheres alone.
+  std::size_t triangles = 0;
   double vertex_error = 0.0;  // of that mesh; in the fit's padding
   double seconds = 0.0;       // on the wall clock; 0 where an equal link was covered before
   // For a person: an open mesh, promises that are not proved.
@@ -171,11 +172,13 @@ struct RobotCover {
 // Covers the geometry of every link with spheres, each link by simplify(), and certifies them: the
 // one function behind `spherule robot`. Promises G1 and G2 (docs/guarantee.md) for each link whose
 // `fit` says so; links_not_proved() names the others. What is covered is the link's mesh grown by
-// its vertex error and the padding (link_mesh()), so that exact primitives are covered too; their
-// tessellation lies outside of them by at most E / 16, which counts as mesh. S is that mesh
-// simplified for things not smaller than D. Links with the same shapes, E, D and padding, and
-// without zones, are covered once. Equal input and options give equal spheres on any
-// number of threads, unless `seconds` is set or a stop is requested.
+// its vertex error and the padding (link_mesh()), so that exact primitives are covered too; by as
+// much as their tessellation lies outside of them, at most E / 16, the spheres protrude less from
+// it than E. S is that mesh simplified for things not smaller than D. Links of spheres alone are
+// their own cover, with their own S. The protrusion is stated over exact primitives, too. Links
+// with the same shapes, E, D and padding, and without zones, are covered once. Equal input and
+// options give equal spheres on any number of threads, unless `seconds` is set or a stop is
+// requested.
 //
 // Throws Error for options out of range, an option for a link that does not exist or has no such
 // geometry, a robot without any, a link more than 10,000 E across (its mesh is probably in

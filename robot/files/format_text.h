@@ -46,6 +46,9 @@ class TextLines {
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
   }
 
+  // From the next line on.
+  void look_at(std::size_t columns) { columns_ = columns; }
+
   // The next line with words; false at the end. Throws Error for a line in which commas may be
   // those of decimals, as far as it is of interest: beside semicolons, or beside blanks that
   // separate.

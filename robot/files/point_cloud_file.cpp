@@ -5,14 +5,20 @@
 #include "base/text.h"
 #include "io/ply_data.h"
 #include "robot/files/format_text.h"
+#include "robot/files/pcd_data.h"
 #include "robot/files/scene_file.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace spherule {
 namespace {
@@ -32,35 +38,78 @@ double point_error(bool is_rounded, bool is_scaled, double largest) {
   return roundings == 0 ? 0.0 : 2.0 * roundings * kUnitRoundoff * largest + kUnderflow;
 }
 
-// Files named .pts may begin with the number of their points, as scanners write them; others do
-// not.
-enum class FirstLine { kPoint, kPointOrCount };
+// Which columns of a table of text are x, y and z.
+using Columns = std::array<std::size_t, 3>;
 
-Vector3d point_of(const internal::TextLines& lines) {
-  if (lines.words().size() < 3) lines.refuse("has no x, y and z");
+// By the names of a first line, as "x,y,z" and, from CloudCompare, "//X Y Z R G B" have them.
+std::optional<Columns> named_columns(std::span<const std::string_view> words) {
+  Columns columns = {words.size(), words.size(), words.size()};
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string_view name = words[i];
+    if (i == 0 && name.starts_with("//")) name.remove_prefix(2);
+    if (name.size() == 3 && name.front() == '"' && name.back() == '"') name = name.substr(1, 1);
+    if (name.size() != 1) continue;
+    const std::size_t axis = std::string_view("xyzXYZ").find(name[0]);
+    if (axis == std::string_view::npos) continue;
+    if (columns[axis % 3] != words.size()) return std::nullopt;
+    columns[axis % 3] = i;
+  }
+  if (std::ranges::find(columns, words.size()) != columns.end()) return std::nullopt;
+  return columns;
+}
+
+bool is_number(std::string_view word) {
+  return internal::has_form_of_number(word) || internal::is_not_finite(word);
+}
+
+Vector3d point_of(const internal::TextLines& lines, const Columns& columns) {
   Vector3d point;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::optional<double> number = internal::finite_number(lines.words()[k]);
-    if (!number) lines.refuse(internal::in_quotes(lines.words()[k]) + " is not a finite number");
+    if (columns[k] >= lines.words().size()) lines.refuse("has no x, y and z");
+    const std::string_view word = lines.words()[columns[k]];
+    std::optional<double> number = internal::finite_number(word);
+    if (!number && internal::is_not_finite(word)) number = std::nan("");
+    if (!number) lines.refuse(internal::in_quotes(word) + " is not a number");
     point[static_cast<Eigen::Index>(k)] = *number;
   }
   return point;
 }
 
-std::vector<Vector3d> text_points(std::string_view text, const std::string& file,
-                                  FirstLine first_line) {
+// Files named .pts may begin with the number of their points, as scanners write them, and so may
+// what follows the names that CloudCompare writes; others do not.
+std::vector<Vector3d> text_points(std::string_view text, const std::string& file, bool is_pts) {
   std::vector<Vector3d> points;
   std::optional<std::int64_t> count;
+  Columns columns = {0, 1, 2};
   internal::TextLines lines(text, file, 3);
-  for (bool is_first = true; lines.next(); is_first = false) {
-    if (is_first && first_line == FirstLine::kPointOrCount && lines.words().size() == 1) {
-      count = internal::whole_number(lines.words()[0]);
+  bool may_be_names = true;
+  bool may_be_count = is_pts;
+  while (lines.next()) {
+    const std::string_view first = lines.words()[0];
+    if (may_be_names && !first.empty() && !is_number(first)) {
+      const bool is_remark = first.starts_with("//");
+      if (const std::optional<Columns> named = named_columns(lines.words())) {
+        columns = *named;
+        lines.look_at(*std::ranges::max_element(columns) + 1);
+      } else if (!is_remark) {
+        lines.refuse(internal::in_quotes(first) +
+                     " is not a number, and the line does not name columns x, y and z");
+      }
+      may_be_names = false;
+      may_be_count = is_pts || is_remark;
+      continue;
+    }
+    may_be_names = false;
+    if (may_be_count && lines.words().size() == 1) {
+      may_be_count = false;
+      count = internal::whole_number(first);
       if (count) continue;
     }
-    points.push_back(point_of(lines));
+    may_be_count = false;
+    points.push_back(point_of(lines, columns));
   }
   if (count && *count != static_cast<std::int64_t>(points.size())) {
-    throw Error(file, "its first line says " + std::to_string(*count) + " points, but it has " +
+    throw Error(file, "it says that it has " + std::to_string(*count) + " points, but it has " +
                           std::to_string(points.size()));
   }
   return points;
@@ -76,7 +125,7 @@ std::vector<Vector3d> ply_points(internal::PlyData& data) {
       continue;
     }
     has_vertices = true;
-    points = data.read_points(element);
+    points = data.read_points(element, internal::NonFinite::kRead);
   }
   data.expect_end();
   if (!has_vertices) throw Error(data.subject(), "it has no vertices");
@@ -93,31 +142,38 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
     throw Error(file, "the scale is not a number from 1e-300 to 1e15");
   }
   const std::string extension = internal::lower_extension(path);
-  const bool is_ply = extension == "ply";
-  if (!is_ply && std::ranges::find(kTextExtensions, extension) == kTextExtensions.end()) {
-    throw Error(file, "points are read from files named .ply, .xyz, .txt, .csv, .asc or .pts");
+  const bool is_text = std::ranges::find(kTextExtensions, extension) != kTextExtensions.end();
+  if (!is_text && extension != "ply" && extension != "pcd") {
+    throw Error(file,
+                "points are read from files named .ply, .pcd, .xyz, .txt, .csv, .asc or .pts");
   }
   const std::string content = read_file(path);
   PointCloudFile cloud;
   bool is_rounded = true;
-  if (is_ply) {
+  if (extension == "ply") {
     internal::PlyData data(content, file);
     cloud.points = ply_points(data);
     is_rounded = data.is_text();
+  } else if (extension == "pcd") {
+    internal::PcdPoints read = internal::read_pcd(content, file);
+    cloud.points = std::move(read.points);
+    is_rounded = read.is_text;
   } else {
-    cloud.points = text_points(content, file,
-                               extension == "pts" ? FirstLine::kPointOrCount : FirstLine::kPoint);
+    cloud.points = text_points(content, file, extension == "pts");
   }
-  if (cloud.points.empty()) throw Error(file, "it has no points");
   double largest = 0.0;
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    Vector3d& point = cloud.points[i];
-    point *= scale;
+    if (!cloud.points[i].allFinite()) continue;
+    const Vector3d point = cloud.points[i] * scale;
     if (!is_usable_point(point)) {
-      throw Error(file, "point " + std::to_string(i) + " is beyond 1e15 or not finite");
+      throw Error(file, "point " + std::to_string(i) + " is beyond 1e15");
     }
     largest = std::max(largest, point.lpNorm<Eigen::Infinity>());
+    cloud.points[kept++] = point;
   }
+  if (kept == 0) throw Error(file, "it has no points");
+  cloud.points.resize(kept);
   cloud.point_error = point_error(is_rounded, scale != 1.0, largest);
   return cloud;
 }

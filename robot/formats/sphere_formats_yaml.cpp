@@ -185,11 +185,21 @@ std::string xrdf_geometry(const YamlMembers& root, const SphereGatherer& gathere
   return yaml_scalar(*name, "the name of a geometry", gathered);
 }
 
+// To YAML 1.1, as PyYAML reads it, that is octal; to YAML 1.2 it is decimal.
+bool may_be_octal(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  return text.size() > 1 && text.front() == '0' &&
+         text.find_first_not_of("01234567") == std::string_view::npos &&
+         text.find_first_not_of('0') != std::string_view::npos;
+}
+
 // A quoted number is a text to every reader of YAML.
 double number(const Node& node, const std::string& what, const SphereGatherer& gathered) {
   std::optional<double> value;
   if (node.IsScalar() && node.Tag() != "!") value = finite_number(node.Scalar());
   if (!value) gathered.refuse(place_of(node), what + " is not a number");
+  gathered.unless(!may_be_octal(node.Scalar()), place_of(node),
+                  what + ", " + node.Scalar() + ", is octal to some readers and decimal to others");
   return *value;
 }
 

@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -197,39 +198,6 @@ struct Axes {
   int second;
 };
 
-// Where a line enters or leaves something, and by how much the winding number changes there.
-using Crossing = std::pair<double, int>;
-
-// Length of the line on which the winding number is not 0.
-double length_inside(std::vector<Crossing> crossings) {
-  std::sort(crossings.begin(), crossings.end());
-  double length = 0.0;
-  int winding = 0;
-  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
-    winding += crossings[i].second;
-    if (winding != 0) length += crossings[i + 1].first - crossings[i].first;
-  }
-  return length;
-}
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-void cross_triangle(const std::array<Vector3d, 3>& corners, const Axes& axes, const Vector2d& line,
-                    std::vector<Crossing>& crossings) {
-  std::array<Vector2d, 3> to;
-  for (std::size_t k = 0; k < 3; ++k) to[k] = axes.across(corners[k]) - line;
-  std::array<double, 3> weights;
-  for (std::size_t k = 0; k < 3; ++k) weights[k] = cross(to[(k + 1) % 3], to[(k + 2) % 3]);
-  const bool is_front = weights[0] > 0.0 && weights[1] > 0.0 && weights[2] > 0.0;
-  const bool is_back = weights[0] < 0.0 && weights[1] < 0.0 && weights[2] < 0.0;
-  if (!is_front && !is_back) return;
-  double at = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) at += weights[k] * corners[k][axes.along];
-  crossings.emplace_back(at / (weights[0] + weights[1] + weights[2]), is_front ? 1 : -1);
-}
-
 struct Interval {
   double low;
   double high;
@@ -267,6 +235,49 @@ class IntervalUnion {
  private:
   std::vector<Interval> parts_;  // in their order along the line
 };
+
+// Where a line crosses a closed surface, and by how much its winding number changes there.
+struct Crossing {
+  std::int32_t surface;
+  double at;
+  int turn;
+};
+
+// Length of the line on which the winding number of any surface is not 0.
+double length_inside(std::vector<Crossing> crossings) {
+  std::ranges::sort(crossings, {}, [](const Crossing& c) { return std::pair(c.surface, c.at); });
+  IntervalUnion inside;
+  int winding = 0;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    if (i > 0 && crossings[i].surface != crossings[i - 1].surface) winding = 0;
+    winding += crossings[i].turn;
+    if (winding != 0 && crossings[i].surface == crossings[i + 1].surface) {
+      inside.add({crossings[i].at, crossings[i + 1].at});
+    }
+  }
+  return inside.length();
+}
+
+double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+void cross_triangle(const std::array<Vector3d, 3>& corners, const TriangleRole& role,
+                    const Axes& axes, const Vector2d& line, std::vector<Crossing>& crossings) {
+  std::array<Vector2d, 3> to;
+  for (std::size_t k = 0; k < 3; ++k) to[k] = axes.across(corners[k]) - line;
+  std::array<double, 3> weights;
+  for (std::size_t k = 0; k < 3; ++k) weights[k] = cross(to[(k + 1) % 3], to[(k + 2) % 3]);
+  const bool is_front = weights[0] > 0.0 && weights[1] > 0.0 && weights[2] > 0.0;
+  const bool is_back = weights[0] < 0.0 && weights[1] < 0.0 && weights[2] < 0.0;
+  if (!is_front && !is_back) return;
+  double at = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) at += weights[k] * corners[k][axes.along];
+  at /= weights[0] + weights[1] + weights[2];
+  role.for_each_surface(is_front ? 1 : -1, [&](std::int32_t surface, int turn) {
+    crossings.push_back({surface, at, turn});
+  });
+}
 
 // What of the line lies in the sphere, as far as it is within the limits.
 void add_sphere(const Sphere& sphere, const Axes& axes, const Vector2d& line,
@@ -346,12 +357,13 @@ double number_of_lines(std::size_t things) {
 }  // namespace
 
 std::optional<double> estimate_volume_ratio(const TriangleMesh& mesh,
+                                            const std::vector<TriangleRole>& roles,
                                             std::span<const Sphere> spheres) {
   const Lines through_mesh(box_of(mesh), number_of_lines(mesh.triangles.size()));
   const double solid = through_mesh.sum_of_lengths([&](const Axes& axes, const Vector2d& line) {
     std::vector<Crossing> crossings;
-    for (const Eigen::Vector3i& t : mesh.triangles) {
-      cross_triangle(corners_of(mesh, t), axes, line, crossings);
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+      cross_triangle(corners_of(mesh, mesh.triangles[i]), roles[i], axes, line, crossings);
     }
     return length_inside(std::move(crossings));
   });
@@ -368,7 +380,9 @@ std::optional<double> estimate_volume_ratio(const TriangleMesh& mesh,
   return std::isfinite(ratio) && ratio > 0.0 ? std::optional(ratio) : std::nullopt;
 }
 
-EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalSpheres& external) {
+EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh,
+                                       const std::vector<TriangleRole>& roles,
+                                       const ExternalSpheres& external) {
   const Eigen::AlignedBox3d& box = external.box;
   const Lines lines(box, kMaxLines);
   const Axes& axes = lines.axes;
@@ -381,12 +395,13 @@ EstimatedVolume estimate_filled_volume(const TriangleMesh& mesh, const ExternalS
     };
     std::vector<Line> inside(lines.count);
     const std::size_t first = row * lines.count;
-    for (const Eigen::Vector3i& t : mesh.triangles) {
-      const std::array<Vector3d, 3> corners = corners_of(mesh, t);
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+      const std::array<Vector3d, 3> corners = corners_of(mesh, mesh.triangles[i]);
       const Vector3d least = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
       const Vector3d greatest = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
       lines.for_each_in(row, axes.across(least), axes.across(greatest), [&](std::size_t place) {
-        cross_triangle(corners, axes, lines.places[place], inside[place - first].crossings);
+        cross_triangle(corners, roles[i], axes, lines.places[place],
+                       inside[place - first].crossings);
       });
     }
     for (const Sphere& sphere : external.spheres) {

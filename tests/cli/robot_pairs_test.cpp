@@ -47,6 +47,25 @@ TEST_F(RobotPairsTest, PairsThatNeverTouchAreIgnoredWithTheReason) {
   EXPECT_TRUE(report["posture_contacts"].empty());
 }
 
+// What little effort leaves open is no proof, and more effort proves more.
+TEST_F(RobotPairsTest, TheirWorkGrowsWithTheEffort) {
+  std::string robot = gantry("-0.05");
+  const std::string turn = R"(<axis xyz="1 0 0"/><limit lower="-1")";
+  robot.replace(robot.find(turn), turn.size(), R"(<axis xyz="0 1 0"/><limit lower="-1")");
+  write("gantry.urdf", robot);
+  std::size_t boxes = 0;
+  double free_share = 0.0;
+  for (const std::string effort : {"0", "4", "60"}) {
+    expect_exit(0, "robot gantry.urdf -o out --max-error 0.1 --postures 10 --effort " + effort);
+    const json pair = read_json("out/gantry.report.json")["link_pairs"]["pairs"][0];
+    EXPECT_EQ(pair["verdict"], "touching");
+    EXPECT_GT(pair["boxes"].get<std::size_t>(), boxes) << effort;
+    EXPECT_GT(pair["free_share"].get<double>(), free_share) << effort;
+    boxes = pair["boxes"];
+    free_share = pair["free_share"];
+  }
+}
+
 // Of an SRDF the comments stay; written into a second time, no file changes.
 TEST_F(RobotPairsTest, FilesThatAreKeptGetThePairsOnce) {
   write("my.srdf", "<robot name=\"gantry\">\n  <!-- mine -->\n</robot>\n");

@@ -71,6 +71,15 @@ Seeds ply_seeds() {
           ply_bytes(kSolid, PlyForm::kLittleEndian, true)};
 }
 
+// Of one point: in text, in bytes, and compressed (four bytes, then these twice more).
+Seeds pcd_seeds() {
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ";
+  const std::string one("\0\0\x80\x3f", 4);
+  const std::string packed("\7\0\0\0\x0c\0\0\0\3\0\0\x80\x3f\xc0\3", 15);
+  return {head + "ascii\n1 2 3\n", head + "binary\n" + one + one + one,
+          head + "binary_compressed\n" + packed};
+}
+
 // A strip of two triangles, one vertex moved by a sparse accessor, and two triangles in a fan.
 std::string sparse_gltf() {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
@@ -158,6 +167,7 @@ const std::map<std::string_view, Seeds>& all_seeds() {
       {"obj", {obj_text(kSolid), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1//1 2/1/1 3/2 -1\n"}},
       {"ply", ply_seeds()},
       {"points_ply", ply_seeds()},
+      {"points_pcd", pcd_seeds()},
       {"off", {off_text(kSolid)}},
       {"3mf", {threemf_bytes(kModel), threemf_bytes(kModel, Zip::kDeflated64)}},
       {"3mf_model", {kModel, assembled_model()}},

@@ -270,6 +270,7 @@ const FuzzTarget kTargets[] = {
     {"trajectory", ".csv", read_as_trajectory, ""},
     {"points", ".xyz", read_as_points, ""},
     {"points_ply", ".ply", read_as_points, ""},
+    {"points_pcd", ".pcd", read_as_points, ""},
     {"urdf", ".urdf", read_as_urdf, kXml},
     {"srdf", ".srdf", [](const fs::path& file) { read_srdf(file); }, kXml},
     {"pairs", ".pairs", read_as_pairs, ""},

@@ -3,6 +3,7 @@
 
 #include "geometry/point_triangle.h"
 #include "geometry/shells.h"
+#include "geometry/triangle_mesh.h"
 #include "tests/support/effort.h"
 #include "tests/support/exact/shapes.h"
 #include "tests/support/random_scene.h"
@@ -293,7 +294,9 @@ std::vector<Vector3d> points_off(const MeshDistance& distance, std::size_t count
   return points;
 }
 
-TEST(ClosedShells, TheNumberCountedAlongARayIsThatOfTheSolidAngles) {
+// Outside of hollows, where parts may take each other's inside away, a ray says what the solid
+// angles say.
+TEST(ClosedShells, WhatIsCountedAlongARayIsThatOfTheSolidAngles) {
   std::size_t inside = 0;
   for (const NamedMesh& named : mesh_zoo()) {
     SCOPED_TRACE(named.name);
@@ -301,9 +304,13 @@ TEST(ClosedShells, TheNumberCountedAlongARayIsThatOfTheSolidAngles) {
     const internal::ClosedShells shells(named.mesh, distance);
     if (!shells.is_mesh_closed()) continue;
     for (const Vector3d& p : points_off(distance, static_cast<std::size_t>(effort(300, 30)))) {
-      const int counted = shells.winding_number(p);
-      ASSERT_EQ(counted, std::lround(distance.winding_number(p)));
-      inside += counted != 0 ? 1 : 0;
+      const bool is_inside = shells.contain(p);
+      if (mesh_report(named.mesh).components == 1) {
+        ASSERT_EQ(is_inside, std::lround(distance.winding_number(p)) != 0);
+      } else if (std::lround(distance.winding_number(p)) != 0) {
+        ASSERT_TRUE(is_inside);
+      }
+      inside += is_inside ? 1 : 0;
     }
   }
   EXPECT_GT(inside, 100U);
@@ -334,7 +341,6 @@ TEST(ClosedShells, RaysThroughEdgesAndCornersDoNotChangeTheNumber) {
   const internal::ClosedShells shells(mesh, distance);
   ASSERT_TRUE(shells.is_mesh_closed());
   const Vector3d origin = Vector3d::Zero();
-  EXPECT_EQ(shells.winding_number(origin), std::lround(distance.winding_number(origin)));
   EXPECT_TRUE(shells.contain(origin));
   for (const Vector3d& d : along) {
     EXPECT_FALSE(shells.contain(1.8 * d));
@@ -348,7 +354,7 @@ TEST(ClosedShells, AShellWithinAnotherThatTakesItAwayStillSealsItsHollow) {
   const MeshDistance distance(hollow);
   const internal::ClosedShells shells(hollow, distance);
   const Vector3d middle(0.5, 0.51, 0.52);
-  EXPECT_EQ(shells.winding_number(middle), 0);
+  EXPECT_NEAR(distance.winding_number(middle), 0.0, 1e-12);
   EXPECT_TRUE(shells.contain(middle));
   EXPECT_TRUE(shells.contain(Vector3d::Constant(0.1)));
   EXPECT_FALSE(shells.contain(Vector3d::Constant(1.1)));

@@ -55,7 +55,7 @@ TEST(MeshReport, CountsWhatIsUnusual) {
                                Case{"inverted", inverted(cube_mesh()), true, 0, 0, 0, 1, 1, 6.0},
                                Case{"shells", nested_shells(3), true, 0, 0, 0, 3, 1,
                                     6.0 * (1.0 + 121.0 / 225.0 + 49.0 / 225.0)},
-                               Case{"one triangle turned", turned, false, 0, 0, 3, 1, 0, 6.0}}) {
+                               Case{"one triangle turned", turned, true, 0, 0, 3, 1, 0, 6.0}}) {
     SCOPED_TRACE(expected.name);
     const MeshReport report = mesh_report(expected.mesh);
     EXPECT_EQ(report.closed, expected.closed);
@@ -106,8 +106,46 @@ TEST(MeshReport, DuplicatesCountFromTheSecondInEitherOrientation) {
   const MeshReport both_sides = mesh_report(joined(cube, inverted(cube)));
   EXPECT_EQ(both_sides.duplicate_triangles, 12u);
   EXPECT_TRUE(both_sides.closed);
-  EXPECT_NEAR(both_sides.volume, 0.0, 1e-15);
+  EXPECT_NEAR(twice.volume, 1.0, 1e-15);
+  EXPECT_NEAR(both_sides.volume, 1.0, 1e-15);
   EXPECT_EQ(both_sides.inverted_components, 0u);
+}
+
+// The inside is all that is shut in, whichever way triangles are turned.
+TEST(MeshReport, TheVolumeDoesNotDependOnHowTrianglesAreTurned) {
+  const TriangleMesh cube = cube_mesh();
+  const TriangleMesh within =
+      box_mesh(Eigen::Vector3d::Constant(0.25), Eigen::Vector3d::Ones() * 0.5);
+  const TriangleMesh upon = box_mesh({0.25, 0.25, 1.0}, {0.5, 0.5, 1.5});
+  const TriangleMesh beside = box_mesh({1, 0, 0}, {2, 1, 1});
+  struct Case {
+    const char* name;
+    TriangleMesh mesh;
+    double volume;
+  };
+  for (const Case& c :
+       {Case{"one", cube, 1.0}, Case{"a hollow", joined(cube, inverted(within)), 1.0},
+        Case{"a body within", joined(cube, within), 1.0},
+        Case{"one upon the other", joined(cube, upon), 1.0 + 1.0 / 32.0},
+        Case{"apart", joined(cube, moved(cube, Eigen::Isometry3d(Eigen::Translation3d(3, 0, 0)))),
+             2.0},
+        Case{"with a face in common", joined(cube, beside), 2.0}}) {
+    SCOPED_TRACE(c.name);
+    Random random(5);
+    for (int round = 0; round < 8; ++round) {
+      TriangleMesh mesh = round % 2 == 0 ? c.mesh : joined(c.mesh, inverted(c.mesh));
+      for (Eigen::Vector3i& t : mesh.triangles) {
+        if (round > 1 && random.unit() < 0.5) std::swap(t[0], t[1]);
+      }
+      const MeshReport report = mesh_report(mesh);
+      EXPECT_TRUE(report.closed) << round;
+      EXPECT_NEAR(report.volume, c.volume, 1e-12) << round;
+    }
+  }
+  // Sheets have no inside, on however many sides they are drawn.
+  const TriangleMesh open = open_box();
+  EXPECT_FALSE(mesh_report(joined(open, inverted(open))).closed);
+  EXPECT_EQ(mesh_report(joined(open, inverted(open))).volume, 0.0);
 }
 
 TEST(MeshReport, DegenerateTriangles) {

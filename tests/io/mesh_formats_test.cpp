@@ -380,7 +380,7 @@ TEST_F(Formats, Ply) {
                  {{"3 0 2 3", "3 0 2 8", "vertex 8 (from 0) of 8"},
                   {"3 0 2 3", "3 0 2 -3", "vertex -3"},
                   {"3 0 2 3", "3 0 2 1.5", "whole number"},
-                  {"3 0 2 3", "4000 0 2 3", "length"},
+                  {"3 0 2 3", "4000 0 2 3", "whole number from 0 to 255"},
                   {"vertex 8", "vertex 9", "line"},
                   {"vertex 8", "vertex 999999999", "cannot hold"},
                   {"float y", "float w", "lack one of x, y and z"},
@@ -420,6 +420,44 @@ TEST_F(Formats, Ply) {
     const auto at = [&](int k) { return strip.vertices[static_cast<std::size_t>(t[k])]; };
     EXPECT_EQ((at(1) - at(0)).cross(at(2) - at(0)).z(), 1.0);
   }
+}
+
+// Colours, normals and texture coordinates; what is used is read strictly.
+TEST_F(Formats, NumbersThatAreNotUsedMayBeAnything) {
+  const auto triangles = [&](const std::string& extension, const std::string& bytes) {
+    return read(extension, bytes).triangles.size();
+  };
+  const std::string obj =
+      "v 0 0 0 nan -nan inf\nv 1 0 0 1e999 x 0 1\nv 0 1 0\nvn nan nan nan\nvt inf\nf 1/1/1 2 "
+      "3//1\n";
+  EXPECT_EQ(triangles("obj", obj), 1U);
+  EXPECT_TRUE(refused("obj", replaced(obj, "v 0 0 0", "v 0 0 nan"), "not a finite number"));
+  EXPECT_TRUE(refused("obj", replaced(obj, "v 0 1 0", "v 0 1 0 nan"), "not a finite number"));
+  EXPECT_TRUE(refused("obj", replaced(obj, "v 0 1 0", "v 0 1 0 2"), "a weight other than 1"));
+  const std::string off =
+      "CNOFF\n3 1 0\n0 0 0 nan nan nan inf 0 0 1\n1 0 0 nan\n0 1 0\n"
+      "3 0 1 2 nan nan nan\n";
+  EXPECT_EQ(triangles("off", off), 1U);
+  EXPECT_TRUE(refused("off", replaced(off, "1 0 0 nan", "nan 0 0 1"), "not a finite number"));
+  const std::string stl =
+      "solid\nfacet normal nan inf -nan\nouter loop\nvertex 0 0 0\n"
+      "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+  EXPECT_EQ(triangles("stl", stl), 1U);
+  EXPECT_TRUE(refused("stl", replaced(stl, "1 0 0", "1 nan 0"), "not a finite number"));
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty short x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty float nx\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "element camera 1\nproperty float view\nend_header\n"
+      "0 0 0 300 nan\n1 0 0 -1 inf\n0 1 0 1.5 1e999\n3 0 1 2 2 nan inf\nnan\n";
+  EXPECT_EQ(triangles("ply", ply), 1U);
+  EXPECT_TRUE(refused("ply", replaced(ply, "0 0 0 300", "0 nan 0 300"), "not a finite number"));
+  EXPECT_TRUE(refused("ply", replaced(ply, "0 0 0 300", "40000 0 0 300"),
+                      "line 15: '40000' is not a whole number from -32768 to 32767"));
+  EXPECT_TRUE(refused("ply", replaced(ply, "0 0 0 300", "0.5 0 0 300"), "is not a whole number"));
+  EXPECT_TRUE(refused("ply", replaced(ply, "3 0 1 2", "300 0 1 2"),
+                      "'300' is not a whole number from 0 to 255"));
+  EXPECT_TRUE(refused("ply", replaced(ply, "2 nan inf", "2 nan"), "too few numbers"));
 }
 
 TEST_F(Formats, ThreeMf) {

@@ -201,6 +201,9 @@ TEST_F(SceneFormats, Gltf) {
                    "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_"
                    "mesh_compression\"]",
                    "requires the extension"}});
+  expect_refused("gltf", good,
+                 {{"{\"mesh\":0,", "{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{}},",
+                   "EXT_mesh_gpu_instancing shows in many places"}});
   // Buffers outside the folder are not opened.
   for (const char* elsewhere : {"../", "/etc/", "file:///etc/", "%2e%2e/", "https://a/"}) {
     EXPECT_TRUE(refused("gltf", replaced(good, "data:application/octet-stream;base64,", elsewhere),
@@ -250,7 +253,9 @@ TEST_F(SceneFormats, MirroredMeshesAreTurnedOver) {
   const std::string gltf = replaced(gltf_text(cube_, Vector3d(1, 2, 3)), "{\"mesh\":0,",
                                     "{\"mesh\":0,\"scale\":[-1,2,3],");
   const auto volume = [&](const std::string& extension, const std::string& bytes) {
-    return mesh_report(read(extension, bytes)).volume;
+    const MeshReport report = mesh_report(read(extension, bytes));
+    EXPECT_EQ(report.inverted_components, 0U) << extension;
+    return report.volume;
   };
   EXPECT_NEAR(volume("dae", dae_text(cube_, mirror)), 6.0, 1e-12);
   EXPECT_NEAR(volume("gltf", gltf), 6.0, 1e-12);

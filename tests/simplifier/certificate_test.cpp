@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What certify() says of sets whose leaks and protrusion are known, and what it refuses.
+#include "geometry/mesh_distance.h"
+#include "geometry/shells.h"
+#include "geometry/weld.h"
 #include "simplifier/proof/protrusion.h"
 #include "simplifier/simplify.h"
 #include "tests/simplifier/fitting.h"
@@ -418,8 +421,15 @@ TEST(ProtrusionOverMesh, OfAPointFarFromTheOriginIsBoundedByItsCells) {
 
 constexpr double kBall = 4.0 / 3.0 * std::numbers::pi;
 
+std::vector<internal::TriangleRole> roles_of(const TriangleMesh& mesh) {
+  return internal::find_shells(internal::weld(mesh)).roles;
+}
+
+std::optional<double> maybe_ratio(const TriangleMesh& mesh, const Spheres& spheres) {
+  return internal::estimate_volume_ratio(mesh, roles_of(mesh), spheres);
+}
 double ratio(const TriangleMesh& mesh, const Spheres& spheres) {
-  return internal::estimate_volume_ratio(mesh, spheres).value();
+  return maybe_ratio(mesh, spheres).value();
 }
 
 TEST(VolumeRatio, WhatSeveralSpheresHoldCountsOnce) {
@@ -432,14 +442,16 @@ TEST(VolumeRatio, WhatSeveralSpheresHoldCountsOnce) {
   EXPECT_NEAR(ratio(cube, {sphere, {kMiddle + Vector3d::UnitX(), 1.0}}), both, 0.01 * both);
 }
 
-TEST(VolumeRatio, OverlapsOfTheMeshCountOnceAndHollowsNot) {
+TEST(VolumeRatio, OverlapsAndSealedHollowsOfTheMeshCountOnce) {
   const TriangleMesh cube = cube_mesh();
   const TriangleMesh hole = box_mesh(Vector3d::Constant(0.25), Vector3d::Constant(0.75));
   const double ring = 60.0 * std::sin(2.0 * std::numbers::pi / 60.0) / 2.0 * (1.0 - 0.9 * 0.9);
   std::vector<std::pair<TriangleMesh, double>> cases = {
       {joined(cube, box_mesh({0.5, 0, 0}, {1.5, 1, 1})), 1.5},
       {inverted(cube), 1.0},
-      {joined(cube, inverted(hole)), 0.875},
+      {joined(cube, inverted(hole)), 1.0},
+      {joined(cube, hole), 1.0},
+      {joined(cube, inverted(cube)), 1.0},
       {pipe(1.0, 0.9, 10.0, 60), 10.0 * ring}};
   for (int axis = 0; axis < 3; ++axis) {
     Vector3d size(4.0, 3.0, 2.0);
@@ -460,9 +472,9 @@ TEST(VolumeRatio, IsAbsentWhereNothingIsMet) {
                            {{0, 1, 2}, {0, 2, 1}}};
   const Spheres around{{Vector3d(50.0, 0.0, 0.0), 51.0}};
   const Spheres far_apart{{Vector3d::Zero(), 0.001}, {Vector3d::Constant(100.0), 0.001}};
-  EXPECT_EQ(internal::estimate_volume_ratio(grains, around), std::nullopt);
-  EXPECT_EQ(internal::estimate_volume_ratio(cube_mesh(), far_apart), std::nullopt);
-  EXPECT_EQ(internal::estimate_volume_ratio(sheet, around), std::nullopt);
+  EXPECT_EQ(maybe_ratio(grains, around), std::nullopt);
+  EXPECT_EQ(maybe_ratio(cube_mesh(), far_apart), std::nullopt);
+  EXPECT_EQ(maybe_ratio(sheet, around), std::nullopt);
 }
 
 // Without external spheres S is the box.
@@ -471,16 +483,88 @@ TEST(FilledVolume, IsWhatTheSolidHasMoreThanTheMesh) {
   ExternalSpheres external;
   external.box = {Vector3d::Constant(-1.0), Vector3d::Constant(2.0)};
   const auto filled = [&](const TriangleMesh& mesh) {
-    return internal::estimate_filled_volume(mesh, external);
+    return internal::estimate_filled_volume(mesh, roles_of(mesh), external);
   };
   EXPECT_NEAR(filled(cube).volume, 26.0, 0.1);
   EXPECT_LT(std::abs(filled(cube).volume - 26.0), 4.0 * filled(cube).error + 1e-9);
   EXPECT_NEAR(filled(inverted(cube)).volume, 26.0, 0.1);
+  EXPECT_NEAR(filled(joined(inverted(cube), cube)).volume, 26.0, 0.1);
   // A sphere that touches the cube, cut by the box on one side, and twice the same.
   external.spheres = {{Vector3d(1.75, 0.5, 0.5), 0.75}, {Vector3d(1.75, 0.5, 0.5), 0.75}};
   const double height = 0.5;  // of the cap that is cut off
   const double cut = std::numbers::pi * height * height * (3.0 * 0.75 - height) / 3.0;
   EXPECT_NEAR(filled(cube).volume, 26.0 - (kBall * std::pow(0.75, 3) - cut), 0.1);
+}
+
+// --- triangles that are turned either way ---
+
+// The same set of points each time: as drawn, twice, both ways as in a double-sided drawing, some
+// the other way round, all of them, and some of them both ways.
+std::vector<NamedMesh> turned_cubes() {
+  const TriangleMesh cube = box_mesh(Vector3d::Constant(-0.5), Vector3d::Constant(0.5));
+  TriangleMesh mixed = cube, partly = cube;
+  for (std::size_t i = 0; i < cube.triangles.size(); i += 3) {
+    std::swap(mixed.triangles[i][1], mixed.triangles[i][2]);
+    partly.triangles.push_back(mixed.triangles[i]);
+  }
+  return {{"plain", cube},
+          {"twice", with_duplicates(cube)},
+          {"both ways", joined(cube, inverted(cube))},
+          {"mixed", mixed},
+          {"inverted", inverted(cube)},
+          {"partly both ways", partly}};
+}
+
+TEST(TurnedTriangles, DoNotChangeTheCertificateOfAFit) {
+  for (const NamedMesh& named : turned_cubes()) {
+    SCOPED_TRACE(named.name);
+    const Certificate c = simplify(named.mesh, {.max_error = 0.05, .effort = 0}).certificate;
+    EXPECT_TRUE(c.covered);
+    EXPECT_LE(c.protrusion_over_mesh.value().upper, 0.0501);
+    EXPECT_NEAR(c.filled_volume.value(), 0.0, 1e-9);
+    EXPECT_NEAR(c.volume_ratio.value(), 1.23, 0.01);
+  }
+}
+
+// The cube is covered but for its middle, which is 0.38 away from the spheres of its surface.
+TEST(TurnedTriangles, DoNotChangeTheDepthOfALeak) {
+  Spheres shell;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int side = 0; side < 2; ++side) {
+      for (int i = -4; i <= 4; ++i) {
+        for (int k = -4; k <= 4; ++k) {
+          Vector3d center(0.5 * (2 * side - 1), 0.125 * i, 0.125 * k);
+          std::rotate(center.begin(), center.begin() + axis, center.end());
+          shell.push_back({center, 0.12});
+        }
+      }
+    }
+  }
+  for (const NamedMesh& named : turned_cubes()) {
+    SCOPED_TRACE(named.name);
+    const Certificate c = certify(named.mesh, shell);
+    EXPECT_FALSE(c.covered);
+    EXPECT_NEAR(c.uncovered_depth.lower, 0.38, 1e-3);
+    EXPECT_NEAR(c.uncovered_depth.upper, 0.38, 1e-3);
+    EXPECT_LE(c.deepest_leak.norm(), 1e-3);
+    EXPECT_NEAR(c.protrusion_over_mesh.value().lower, 0.12, 0.003);
+    EXPECT_NEAR(c.protrusion_over_mesh.value().upper, 0.12, 1e-3);
+  }
+}
+
+// Two boxes that share a face are two bodies, each with its inside.
+TEST(TurnedTriangles, OfTwoBodiesThatShareAFaceEachEnclosesItsOwn) {
+  const TriangleMesh both = joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 0, 0}, {2, 1, 1}));
+  const Spheres corner{{Vector3d::Zero(), 0.1}};
+  for (const TriangleMesh& mesh :
+       {both, inverted(both), with_duplicates(both), joined(both, inverted(both))}) {
+    EXPECT_NEAR(kBall * 1e-3 / ratio(mesh, corner), 2.0, 0.01);
+    const MeshDistance distance(mesh);
+    const internal::ClosedShells shells(mesh, distance);
+    EXPECT_TRUE(shells.is_mesh_closed());
+    for (const double x : {0.31, 0.99, 1.01, 1.69}) EXPECT_TRUE(shells.contain({x, 0.51, 0.52}));
+    for (const double x : {-0.01, 2.01}) EXPECT_FALSE(shells.contain({x, 0.51, 0.52}));
+  }
 }
 
 // --- refusals ---

@@ -272,7 +272,11 @@ const ConcaveEdgeOptions kEdges{.min_external_diameter = 0.9, .max_error = 0.1, 
 TEST(ConcaveEdges, TheInsideEdgeOfABracketIsTheOnlyOne) {
   TriangleMesh mesh = l_bracket();
   for (int level = 0; level < 3; ++level) {
-    for (const TriangleMesh& variant : {mesh, inverted(mesh)}) {
+    TriangleMesh mixed = mesh;
+    for (std::size_t i = 0; i < mixed.triangles.size(); i += 3) {
+      std::swap(mixed.triangles[i][0], mixed.triangles[i][1]);
+    }
+    for (const TriangleMesh& variant : {mesh, inverted(mesh), mixed, joined(mixed, mesh)}) {
       const std::vector<Zone> zones = concave_edge_zones(variant, kEdges);
       ASSERT_EQ(zones.size(), 1U);
       const auto& capsule = std::get<ZoneCapsule>(zones[0].shape);

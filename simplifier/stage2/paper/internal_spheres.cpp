@@ -226,7 +226,7 @@ CoverHistory::CoverHistory(const TriangleMesh& mesh, const MeshDistance& distanc
   std::vector<char> inside(points.size());
   parallel_for(0, points.size(), [&](std::size_t i) {
     const bool is_inside = shells.is_mesh_closed()
-                               ? shells.winding_number(points[i]) != 0
+                               ? shells.contain(points[i])
                                : std::abs(distance.winding_number(points[i])) > 0.5;
     inside[i] = is_inside ? 1 : 0;
   });

@@ -114,8 +114,8 @@ void inflate(SphereCover& cover, const std::vector<Sphere>& spheres, double erro
              const CoverOptions& options);
 
 // Measures, over fixed samples, how a growing set of spheres fits the original mesh (the paper's
-// figures 6 to 8). Estimates, not proofs: the solid is where the winding number rounds to another
-// number than zero.
+// figures 6 to 8). Estimates, not proofs: the solid is the inside of a closed mesh, and of an open
+// one where the winding number rounds to another number than zero.
 class CoverHistory {
  public:
   // `box` holds the solid; spheres may protrude from it by `margin`.

@@ -162,6 +162,7 @@ TEST(LinkMesh, FacesOutwardsWhenMirrored) {
     const Eigen::Vector3d scale(k & 1 ? -2 : 2, k & 2 ? -0.5 : 0.5, k & 4 ? -1 : 1);
     const auto mesh = link_mesh(link_of(folder.path() / "box.stl", scale));
     EXPECT_NEAR(mesh_report(*mesh).volume, 6.0, 1e-9) << scale.transpose();
+    EXPECT_EQ(mesh_report(*mesh).inverted_components, 0U) << scale.transpose();
   }
 }
 
@@ -454,6 +455,27 @@ TEST(ShapesInSpheres, ACavityBetweenThemIsNotHeld) {
   // One sphere that holds all of them encloses none.
   spheres.insert(spheres.begin(), {Vector3d::Zero(), 2.0});
   EXPECT_TRUE(lie_in_single_spheres(shapes, spheres));
+}
+
+// Each of them overlaps many others, and from everywhere between them there is a way out.
+TEST(ShapesInSpheres, ABlockOfManySpheresEnclosesNoCavity) {
+  const auto held = [](double radius, const Vector3d& left_out) {
+    std::vector<LinkShape> shapes;
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < 27; ++i) {
+      const Vector3d center(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      if (center == left_out) continue;
+      spheres.push_back({center, radius});
+      shapes.push_back(shape_of(SolidSphere{radius}, Pose::from_translation(center)));
+    }
+    return lie_in_single_spheres(shapes, spheres);
+  };
+  EXPECT_TRUE(held(0.9, {2, 2, 2}));
+  // The middle of eight is sqrt(3/4) away from them; without one in the middle there is a hollow,
+  // which is open where the sphere before a face is left out.
+  EXPECT_FALSE(held(0.8, {2, 2, 2}));
+  EXPECT_FALSE(held(0.9, {0, 0, 0}));
+  EXPECT_TRUE(held(0.9, {0, 0, 1}));
 }
 
 }  // namespace

@@ -107,27 +107,81 @@ TEST(RobotSpheres, CoverEveryPointOfRandomRobotsAndNotMuchMore) {
       for (int k = 0; k < 3000; ++k) {
         WidePoint p = point_of(robot.links[l], random);
         p += Wide(options.padding) * random.direction().cast<Wide>();
-        ASSERT_LE(outside_of(link.spheres, p), 0) << link.link;
+        // A sphere is covered by itself, and the point has its rounding.
+        ASSERT_LE(outside_of(link.spheres, p), Wide(1e-18)) << link.link;
       }
       // Over the shapes themselves: a gap between shapes may be filled, which the certificate
-      // bounds, and tessellation adds E / 16.
+      // bounds.
       EXPECT_LE(sampled_protrusion(link, robot.links[l], random),
-                link.fit->certificate.protrusion_over_mesh->upper + 0.06 / 16 + options.padding);
+                link.fit->certificate.protrusion_over_mesh->upper + options.padding + 1e-15);
     }
   }
 }
 
-TEST(RobotSpheres, ASphereIsOneSphere) {
-  if (kSanitized) GTEST_SKIP() << kLeftToRelease;
-  RobotDescription robot;
-  robot.name = "ball";
-  robot.links = {
-      {.name = "base_link",
-       .visual = {},
-       .collision = {{.name = "", .link_from_shape = {}, .geometry = SolidSphere{0.05}}}}};
-  const RobotCover cover = cover_robot(robot, quick(0.02));
-  ASSERT_EQ(cover.links[0].spheres.size(), 1U);
-  EXPECT_NEAR(cover.links[0].spheres[0].radius, 0.06, 0.011);
+LinkShape ball(const Eigen::Vector3d& center, double radius) {
+  const Pose pose(Eigen::Quaterniond(1, 2, 3, 4), center);
+  return {.name = "", .link_from_shape = pose, .geometry = SolidSphere{radius}};
+}
+
+RobotCover cover_of(const std::vector<LinkShape>& shapes, const RobotCoverOptions& options) {
+  RobotDescription robot{.name = "post", .model = RobotModel("base")};
+  robot.links = {{.name = "base", .visual = {}, .collision = shapes}};
+  return cover_robot(robot, options);
+}
+
+// However small E is.
+TEST(RobotSpheres, SpheresAreTheirOwnCover) {
+  const std::vector<LinkShape> shapes = {ball({0.1, -0.2, 0.3}, 0.05),
+                                         ball({0.1, -0.2, 0.34}, 0.04),
+                                         ball({0.11, -0.2, 0.3}, 0.02), ball({0.5, 0, 0}, 0.05)};
+  const LinkCover cover = cover_of(shapes, quick(1e-3)).links[0];
+  // The third one lies in the first one.
+  EXPECT_EQ(cover.spheres,
+            (std::vector<Sphere>{
+                {{0.1, -0.2, 0.3}, 0.05}, {{0.5, 0, 0}, 0.05}, {{0.1, -0.2, 0.34}, 0.04}}));
+  const Certificate& certificate = cover.fit->certificate;
+  EXPECT_TRUE(certificate.covered);
+  EXPECT_EQ(certificate.protrusion_over_simplified_max, 0.0);
+  EXPECT_EQ(certificate.protrusion_over_mesh.value().upper, 0.0);
+  EXPECT_TRUE(cover.warnings.empty());
+  const LinkCover padded = cover_of(shapes, {.max_error = 1e-3, .padding = 0.002}).links[0];
+  ASSERT_EQ(padded.spheres.size(), 3U);
+  EXPECT_NEAR(padded.spheres[0].radius, 0.052, 1e-15);
+  EXPECT_LE(*padded.fit->certificate.protrusion_over_simplified_max, 1e-15);
+  EXPECT_NEAR(padded.fit->certificate.protrusion_over_mesh->upper, 0.002, 1e-15);
+  EXPECT_TRUE(links_not_proved(cover_of(shapes, {.padding = 0.002})).empty());
+}
+
+// What such spheres shut in has to be covered, too.
+TEST(RobotSpheres, ACavityBetweenSpheresIsCovered) {
+  std::vector<LinkShape> shapes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {0.1, -0.1}) {
+      shapes.push_back(ball(side * Eigen::Vector3d::Unit(axis), 0.09));
+    }
+  }
+  const LinkCover cover = cover_of(shapes, quick(0.01)).links[0];
+  EXPECT_TRUE(cover.fit->certificate.covered);
+  EXPECT_LE(outside_of(cover.spheres, WidePoint::Zero()), 0);
+}
+
+// E holds of the shape itself, not of triangles around it.
+TEST(RobotSpheres, ProtrudeFromACurvedShapeByNoMoreThanTheError) {
+  Random random(7);
+  for (const Primitive& shape : {Primitive(Capsule{0.05, 0.2}), Primitive(Cylinder{0.05, 0.2})}) {
+    const std::vector<LinkShape> shapes = {
+        {.name = "", .link_from_shape = random_pose(random, 0.3), .geometry = shape}};
+    const LinkCover cover = cover_of(shapes, quick(0.01)).links[0];
+    EXPECT_TRUE(cover.fit->certificate.covered);
+    EXPECT_EQ(cover.fit->options.max_error, 0.01);
+    const double bound = cover.fit->certificate.protrusion_over_mesh.value().upper;
+    EXPECT_LE(*cover.fit->certificate.protrusion_over_simplified_max, 0.01);
+    EXPECT_LE(bound, 0.0101);
+    const Wide sampled =
+        sampled_protrusion(cover, {.name = "base", .visual = {}, .collision = shapes}, random);
+    EXPECT_LE(sampled, bound);
+    EXPECT_GE(sampled, 0.7 * bound);
+  }
 }
 
 TEST(RobotSpheres, AreEqualOnAnyNumberOfThreads) {

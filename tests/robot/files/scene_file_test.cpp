@@ -301,7 +301,7 @@ TEST_F(PointCloudFileTest, PtsMayBeginWithTheirNumber) {
   EXPECT_EQ(read("scan.pts", "1 2 3\n4 5 6\n").points, points);
   for (const std::string count : {"1", "3", "-2"}) {
     EXPECT_EQ(fault("scan.pts", count + "\n1 2 3\n4 5 6\n"),
-              "its first line says " + count + " points, but it has 2");
+              "it says that it has " + count + " points, but it has 2");
   }
   EXPECT_EQ(fault("scan.pts", "2.5\n1 2 3\n"), "line 1: has no x, y and z");
   EXPECT_EQ(fault("scan.pts", "1\n1 2 3\n1\n1 2 3\n"), "line 3: has no x, y and z");
@@ -421,11 +421,218 @@ TEST_F(PointCloudFileTest, PlyInBytes) {
   }
 }
 
+// --- as PCL, Open3D and CloudCompare write them ---
+
+TEST_F(PointCloudFileTest, AFirstLineOfNamesSaysWhichColumnsAreRead) {
+  const std::string rows = "1,2,3,9\n-0.5,0.25,1e6,9\n";
+  EXPECT_EQ(read("a.csv", "x,y,z,intensity\n" + rows).points, kPoints);
+  EXPECT_EQ(read("a.csv", "\"X\",\"Y\",\"Z\",\"I\"\r\n" + rows).points, kPoints);
+  EXPECT_EQ(read("a.csv", "id;z;r;y;x\n7;3;8;2;1\n7;1e6;8;0.25;-0.5\n").points, kPoints);
+  EXPECT_EQ(read("a.txt", "//X Y Z R G B\n1 2 3 9 9 9\n-0.5 0.25 1e6 9 9 9\n").points, kPoints);
+  EXPECT_EQ(read("a.asc", "//X Y Z\n2\n1 2 3\n-0.5 0.25 1e6\n").points, kPoints);
+  EXPECT_EQ(read("a.asc", "//made by hand\n1 2 3\n-0.5 0.25 1e6\n").points, kPoints);
+  EXPECT_EQ(fault("a.asc", "//X Y Z\n3\n1 2 3\n-0.5 0.25 1e6\n"),
+            "it says that it has 3 points, but it has 2");
+  EXPECT_EQ(fault("a.csv", "a,b,c\n1,2,3\n"),
+            "line 1: 'a' is not a number, and the line does not name columns x, y and z");
+  EXPECT_EQ(fault("a.csv", "x,y,z,x\n1,2,3,4\n"),
+            "line 1: 'x' is not a number, and the line does not name columns x, y and z");
+  EXPECT_EQ(fault("a.csv", "n,x,y,z\n1,2,3\n"), "line 2: has no x, y and z");
+  EXPECT_EQ(fault("a.csv", "x,y,z\nx,y,z\n"), "line 2: 'x' is not a number");
+  EXPECT_EQ(fault("a.csv", "n,x,y,z\n1 2,3 4 5\n"),
+            "line 2: has commas beside other separators; numbers are separated by commas, by "
+            "semicolons or by blanks, and their decimals are after a point");
+}
+
+TEST_F(PointCloudFileTest, WhatIsNotFiniteIsNoPoint) {
+  EXPECT_EQ(read("a.xyz", "nan nan nan\n1 2 3\n-nan NaN 0\n-0.5 0.25 1e6\n1 inf 2\n").points,
+            kPoints);
+  EXPECT_EQ(read("a.xyz", "nan nan nan\n1 2 3\n").points.size(), 1U);
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty float s\nend_header\n";
+  EXPECT_EQ(read("a.ply", head + "1 2 3 300 nan\nnan 0 0 -1 0\n-0.5 0.25 1e6 0 inf\n").points,
+            kPoints);
+}
+
+// A header and its fields as PCL writes them.
+std::string pcd_header(const std::string& data, const std::string& points = "2") {
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS rgb z x _ y normal\n"
+         "SIZE 4 8 4 1 2 4\nTYPE U F F U I F\nCOUNT 1 1 1 3 1 2\nWIDTH " +
+         points + "\nHEIGHT 1\nVIEWPOINT 5 6 7 0 1 0 0\nPOINTS " + points + "\nDATA " + data + "\n";
+}
+
+// The fields of points, point by point or field by field.
+std::string pcd_data(const std::vector<Vector3d>& points, bool by_field) {
+  std::vector<std::string> fields(6);
+  std::string all;
+  for (const Vector3d& point : points) {
+    std::vector<std::string> values(6);
+    append(values[0], std::uint32_t{0x7fc00000}, false);
+    append(values[1], point.z(), false);
+    append(values[2], static_cast<float>(point.x()), false);
+    values[3] = "\x01\x02\x03";
+    append(values[4], static_cast<std::int16_t>(point.y()), false);
+    for (int k = 0; k < 2; ++k) append(values[5], std::nanf(""), false);
+    for (std::size_t f = 0; f < 6; ++f) {
+      fields[f] += values[f];
+      all += values[f];
+    }
+  }
+  if (!by_field) return all;
+  all.clear();
+  for (const std::string& field : fields) all += field;
+  return all;
+}
+
+// As LZF without any repetition.
+std::string literals(const std::string& data) {
+  std::string packed;
+  for (std::size_t i = 0; i < data.size(); i += 32) {
+    const std::string part = data.substr(i, 32);
+    packed += static_cast<char>(part.size() - 1);
+    packed += part;
+  }
+  return packed;
+}
+
+std::string with_sizes(const std::string& packed, std::size_t unpacked) {
+  std::string bytes;
+  append(bytes, static_cast<std::uint32_t>(packed.size()), false);
+  append(bytes, static_cast<std::uint32_t>(unpacked), false);
+  return bytes + packed;
+}
+
+const std::vector<Vector3d> kWhole = {{1.0, -2.0, 3.25}, {-0.5, 300.0, 1e6}};
+
+TEST_F(PointCloudFileTest, PcdInText) {
+  const std::string rows =
+      "7 3.25 1 0 0 0 -2 nan nan\n\n7 nan 4 0 0 0 4 0 0\n-7 1e6 -.5 0 x 0 300 1 1\n";
+  const PointCloudFile cloud = read("a.pcd", pcd_header("ascii", "3") + rows);
+  EXPECT_EQ(cloud.points, kWhole);
+  EXPECT_GE(cloud.point_error, 1e6 * 0x1p-53);
+  EXPECT_EQ(fault("a.pcd", pcd_header("ascii") + rows), "line 15: more data than the header says");
+  EXPECT_EQ(fault("a.pcd", pcd_header("ascii", "4") + rows), "line 16: the file is cut short");
+  EXPECT_EQ(fault("a.pcd", pcd_header("ascii", "1") + "7 3.25 1 0 0 0 -2 nan\n"),
+            "line 12: point 0 has 8 numbers, not 9");
+  EXPECT_EQ(fault("a.pcd", pcd_header("ascii", "1") + "7 3.25 one 0 0 0 -2 0 0\n"),
+            "line 12: 'one' is not a finite number");
+  EXPECT_EQ(fault("a.pcd", pcd_header("ascii", "1") + "7 3.25 1 0 0 0 40000 0 0\n"),
+            "line 12: '40000' is not of the type that is stated");
+}
+
+TEST_F(PointCloudFileTest, PcdInBytes) {
+  const std::string bytes = pcd_header("binary") + pcd_data(kWhole, false);
+  const PointCloudFile cloud = read("a.PCD", bytes);
+  EXPECT_EQ(cloud.points, kWhole);
+  EXPECT_EQ(cloud.point_error, 0.0);
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    ASSERT_NE(fault("a.pcd", bytes.substr(0, length)), "nothing is wrong") << length;
+  }
+  EXPECT_EQ(fault("a.pcd", bytes + "x"), "byte " + std::to_string(pcd_header("binary").size()) +
+                                             ": more data than the header says");
+  const Vector3d missing(std::nan(""), 0.0, 0.0);
+  EXPECT_EQ(
+      read("a.pcd", pcd_header("binary", "3") + pcd_data({kWhole[0], missing, kWhole[1]}, false))
+          .points,
+      kWhole);
+}
+
+TEST_F(PointCloudFileTest, PcdOfEveryType) {
+  const auto read_one = [&](const std::string& type, const std::string& size, auto value) {
+    std::string bytes = "FIELDS x y z\nSIZE " + size + " " + size + " " + size + "\nTYPE " + type +
+                        " " + type + " " + type + "\nPOINTS 1\nDATA binary\n";
+    for (int k = 0; k < 3; ++k) append(bytes, value, false);
+    return read("a.pcd", bytes).points.front();
+  };
+  EXPECT_EQ(read_one("I", "1", std::int8_t{-128}), Vector3d::Constant(-128));
+  EXPECT_EQ(read_one("U", "1", std::uint8_t{255}), Vector3d::Constant(255));
+  EXPECT_EQ(read_one("I", "2", std::int16_t{-32768}), Vector3d::Constant(-32768));
+  EXPECT_EQ(read_one("U", "2", std::uint16_t{65535}), Vector3d::Constant(65535));
+  EXPECT_EQ(read_one("I", "4", std::int32_t{-70000}), Vector3d::Constant(-70000));
+  EXPECT_EQ(read_one("U", "4", std::uint32_t{4294967295}), Vector3d::Constant(4294967295));
+  EXPECT_EQ(read_one("I", "8", std::int64_t{-5000000000}), Vector3d::Constant(-5e9));
+  EXPECT_EQ(read_one("U", "8", std::uint64_t{5000000000}), Vector3d::Constant(5e9));
+  EXPECT_EQ(read_one("F", "4", 0.1f), Vector3d::Constant(0.1f));
+  EXPECT_EQ(read_one("F", "8", 0.1), Vector3d::Constant(0.1));
+}
+
+TEST_F(PointCloudFileTest, PcdCompressed) {
+  const std::string data = pcd_data(kWhole, true);
+  const std::string head = pcd_header("binary_compressed");
+  const std::string bytes = head + with_sizes(literals(data), data.size());
+  EXPECT_EQ(read("a.pcd", bytes).points, kWhole);
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    ASSERT_NE(fault("a.pcd", bytes.substr(0, length)), "nothing is wrong") << length;
+  }
+  const std::string floats =
+      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 3\nDATA binary_compressed\n";
+  const auto unpacked = [&](const std::string& packed, std::size_t size = 36) {
+    return read("a.pcd", floats + with_sizes(packed, size)).points;
+  };
+  // One zero, 2 + 7 + 21 more by a long reference to it, 2 + 3 by a short one.
+  const std::string zeros = {0, 0, '\xE0', 21, 0, '\x60', 4};
+  EXPECT_EQ(unpacked(zeros), std::vector(3, Vector3d(0, 0, 0)));
+  // 1.0f, repeated from four bytes before.
+  const std::string ones = {3, 0, 0, '\x80', '\x3f', '\xE0', 23, 3};
+  EXPECT_EQ(unpacked(ones), std::vector(3, Vector3d(1, 1, 1)));
+  const auto refusal = [&](const std::string& packed, std::size_t size = 36) {
+    const std::string reason = reason_of([&] { unpacked(packed, size); });
+    return reason.substr(std::min(reason.find(": ") + 2, reason.size()));
+  };
+  EXPECT_EQ(refusal({0, 0, '\xE0', 21, 1, '\x60', 4}),
+            "the packed data refer to before their beginning");
+  EXPECT_EQ(refusal({0, 0, '\xE0', 22, 0, '\x60', 4}), "the packed data yield more than they say");
+  EXPECT_EQ(refusal({0, 0, '\xE0', 20, 0, '\x60', 4}), "the packed data yield less than they say");
+  EXPECT_EQ(refusal({0, 0, '\xE0', 21}), "the packed data are cut short");
+  EXPECT_EQ(refusal({5, 0, 0}), "the packed data are cut short");
+  EXPECT_EQ(refusal(zeros, 35), "the size of the unpacked data is not that of the points");
+}
+
+TEST_F(PointCloudFileTest, RefusesPcd) {
+  const std::string rest = "POINTS 1\nDATA ascii\n1 2 3\n";
+  const auto of_fields = [&](const std::string& fields) { return fault("a.pcd", fields + rest); };
+  EXPECT_EQ(of_fields("FIELDS x y\nSIZE 4 4\nTYPE F F\n"),
+            "line 5: 'FIELDS' has not one x, one y and one z");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 2 1\n"),
+            "line 6: 'FIELDS' has not one x, one y and one z");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4\nTYPE F F F\n"),
+            "line 2: not as many numbers as 'FIELDS' has names");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n"),
+            "line 2: '3' is no size of a number: 1, 2, 4 or 8");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4 4\nTYPE F F D\n"),
+            "line 3: 'D' is no type: F, I or U");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4 2\nTYPE F F F\n"),
+            "line 5: a fraction of less than 4 bytes");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4 4\n"), "line 4: the header lacks 'TYPE'");
+  EXPECT_EQ(of_fields("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nFIELDS x y z\n"),
+            "line 4: 'FIELDS' is there twice");
+  EXPECT_EQ(of_fields("SHAPE x\n"), "line 1: 'SHAPE' is no entry of a header");
+  const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  EXPECT_EQ(fault("a.pcd", fields), "line 4: the header is cut short: 'DATA' is missing");
+  EXPECT_EQ(fault("a.pcd", fields + "DATA ascii\n"), "line 4: the header lacks 'POINTS'");
+  EXPECT_EQ(fault("a.pcd", fields + "POINTS 1\nDATA zip\n"),
+            "line 5: 'zip' is no form of data: ascii, binary or binary_compressed");
+  EXPECT_EQ(fault("a.pcd", fields + "WIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n"),
+            "line 7: 'POINTS' is not 'WIDTH' times 'HEIGHT'");
+  EXPECT_EQ(fault("a.pcd", fields + "POINTS -1\nDATA ascii\n"),
+            "line 4: no usable number of points");
+  EXPECT_EQ(fault("a.pcd", fields + "POINTS 2000000000\nDATA ascii\n1 2 3\n"),
+            "line 5: the file cannot hold 2000000000 points");
+  EXPECT_TRUE(fault("a.pcd", fields + "POINTS 2000000000\nDATA binary\n1234")
+                  .ends_with("the file is cut short"));
+  EXPECT_TRUE(fault("a.pcd", fields + "POINTS 40000000\nDATA binary_compressed\n" +
+                                 with_sizes("abc", 480000000))
+                  .ends_with("so few bytes cannot yield what it says"));
+  EXPECT_EQ(fault("a.pcd", fields + "POINTS 0\nDATA binary\n"), "it has no points");
+}
+
 TEST_F(PointCloudFileTest, Refuses) {
   EXPECT_EQ(fault("a.xyz", "# nothing\n"), "it has no points");
   EXPECT_EQ(fault("a.xyz", "1 2 3\n\n1 2\n"), "line 3: has no x, y and z");
-  EXPECT_EQ(fault("a.xyz", "1 2 nan\n"), "line 1: 'nan' is not a finite number");
-  EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15 or not finite");
+  EXPECT_EQ(fault("a.xyz", "1 2 nan\n"), "it has no points");
+  EXPECT_EQ(fault("a.xyz", "1 2 1e999\n"), "line 1: '1e999' is not a number");
+  EXPECT_EQ(fault("a.xyz", "1 2 3\n1 2e15 3\n"), "point 1 is beyond 1e15");
   EXPECT_NE(fault("a.stl", "1 2 3\n"), "nothing is wrong");
   EXPECT_NE(fault("a.xyz", "1 2 3\n", 0.0), "nothing is wrong");
   for (const double scale : {1e-310, 2e15}) {

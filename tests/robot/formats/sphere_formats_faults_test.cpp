@@ -113,6 +113,9 @@ TEST_F(SphereFormatFaults, Yaml) {
                  "line 3: \"radius\" is not a number");
   expect_refusal(head + "    - {center: [0, 0, 0], radius: \"1\"}", "is not a number");
   expect_refusal(head + "    - {center: [0, 0, .nan], radius: 1}", "a coordinate is not a number");
+  expect_refusal(head + "    - {center: [0, 0, 010], radius: 1}",
+                 "line 3: a coordinate, 010, is octal to some readers and decimal to others");
+  expect_refusal(head + "    - {center: [0, 0, 0], radius: 0o10}", "is not a number");
   expect_refusal(head + "    - {center: [0, 0, 1e17], radius: 1}",
                  "line 3: a number is beyond 1e15");
   expect_refusal(head + "    - {center: [0, 0, 0], radius: 1, radius: 2}", "\"radius\" twice");
