@@ -97,11 +97,11 @@ struct RobotCover {
 // `fit` says so; links_not_proved() names the others. What is covered is the link's mesh grown by
 // its vertex error and the padding (link_mesh.h), so that exact primitives are covered too; by as
 // much as their tessellation lies outside of them, at most E / 16, the spheres protrude less from
-// it than E. S is that mesh
-// simplified for things not smaller than D. Links of spheres alone are their own cover, with their
-// own S. The protrusion is stated over exact primitives, too. Links with the same shapes, E, D and
-// padding, and without zones, are covered once. Equal input and options give equal spheres on any
-// number of threads, unless `seconds` is set or a stop is requested.
+// it than E. S is that mesh simplified for things not smaller than D. Links of spheres alone are
+// their own cover, with an S of their own. The protrusion is stated over exact primitives, too.
+// Links with the same shapes, E, D and padding, and without zones, are covered once. Equal input
+// and options give equal spheres on any number of threads, unless `seconds` is set or a stop is
+// requested.
 //
 // Throws Error for options out of range, an option for a link that does not exist or has no such
 // geometry, a robot without any, a link more than 10,000 E across (its mesh is probably in
