@@ -152,6 +152,18 @@ Certificate within_chord_error(Certificate result, double chord_error) {
 // The certificate and the warnings of a link with geometry.
 void certify_link(const LinkParts& part, const LinkDescription& link,
                   const RobotAuditOptions& options, LinkAudit& audit) {
+  const auto exact =
+      internal::protrusion_over_primitives(link_shapes(link, options.geometry), part.spheres);
+  // Spheres that are what the link is made of; triangles around them would leak by their chords.
+  if (exact && *exact == 0.0 &&
+      internal::lie_in_single_spheres(link_shapes(link, options.geometry), part.spheres)) {
+    Certificate& own = audit.certificate.emplace();
+    own.covered = true;
+    own.protrusion_over_mesh.emplace();
+    own.volume_ratio = 1.0;
+    own.sphere_count = part.spheres.size();
+    return;
+  }
   const Certificate around = certify(*part.mesh, part.spheres, {.threads = options.threads});
   audit.certificate = within_chord_error(around, part.chord_error);
   Certificate& of_mesh = *audit.certificate;
@@ -161,8 +173,6 @@ void certify_link(const LinkParts& part, const LinkDescription& link,
     of_mesh.solid_depth.lower = of_mesh.uncovered_depth.lower = leak.depth;
     of_mesh.deepest_leak = leak.point;
   }
-  const auto exact =
-      internal::protrusion_over_primitives(link_shapes(link, options.geometry), part.spheres);
   if (exact && of_mesh.protrusion_over_mesh) {
     of_mesh.protrusion_over_mesh->upper = std::min(of_mesh.protrusion_over_mesh->upper, *exact);
   }

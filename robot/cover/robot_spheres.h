@@ -175,9 +175,9 @@ struct RobotCover {
 // its vertex error and the padding (link_mesh()), so that exact primitives are covered too; by as
 // much as their tessellation lies outside of them, at most E / 16, the spheres protrude less from
 // it than E. S is that mesh simplified for things not smaller than D. Links of spheres alone are
-// their own cover, with their own S. The protrusion is stated over exact primitives, too. Links
-// with the same shapes, E, D and padding, and without zones, are covered once. Equal input and
-// options give equal spheres on any number of threads, unless `seconds` is set or a stop is
+// their own cover, with an S of their own. The protrusion is stated over exact primitives, too.
+// Links with the same shapes, E, D and padding, and without zones, are covered once. Equal input
+// and options give equal spheres on any number of threads, unless `seconds` is set or a stop is
 // requested.
 //
 // Throws Error for options out of range, an option for a link that does not exist or has no such

@@ -108,7 +108,7 @@ void expect_covered(const std::vector<Sphere>& spheres, const Pose& pose,
       outside = std::min(outside,
                          (p - sphere.center.cast<test::Wide>()).norm() - test::Wide(sphere.radius));
     }
-    ASSERT_LE(outside, 0);
+    ASSERT_LE(outside, 1e-18L);
   }
 }
 

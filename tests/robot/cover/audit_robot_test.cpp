@@ -83,6 +83,22 @@ TEST_F(AuditRobot, LeaksOfCurvedShapesAreTheirOwn) {
   EXPECT_NEAR(more.protrusion_over_mesh->upper, rod.radius + 0.01 - 0.0025, 1e-12);
 }
 
+// At once: triangles around them would leak.
+TEST_F(AuditRobot, ALinkOfSpheresIsCoveredByThem) {
+  const RobotDescription robot = read_urdf(folder_.write(
+      "balls.urdf",
+      "<robot name='balls'><link name='it'><collision><geometry><sphere radius='0.05'/></geometry>"
+      "</collision><collision><origin xyz='0.03 0 0.07' rpy='1 0 0'/><geometry>"
+      "<sphere radius='0.04'/></geometry></collision></link></robot>"));
+  const std::vector<LinkSpheres> spheres{
+      {"it", {{Vector3d(0.03, 0, 0.07), 0.04}, {Vector3d::Zero(), 0.05}}}};
+  const Certificate certificate = *audit_robot(robot, spheres).links.front().certificate;
+  EXPECT_TRUE(certificate.covered);
+  EXPECT_EQ(certificate.uncovered_depth.upper, 0.0);
+  EXPECT_EQ(certificate.protrusion_over_mesh.value().upper, 0.0);
+  EXPECT_EQ(certificate.pieces, 0U);
+}
+
 std::vector<Vector3d> corners_of(const Vector3d& half) {
   std::vector<Vector3d> corners;
   for (int corner = 0; corner < 8; ++corner) {
