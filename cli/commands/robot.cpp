@@ -237,6 +237,7 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
   const RobotModel model = with_spheres(robot.model, spheres.links);
   AllowedCollisions allowed(model);
   allowed.allow(names_of(spheres.self_collision_ignore));
+  allowed.apply(semantics);
   std::vector<NamedPosture> postures = group_postures(model, semantics);
   postures.insert(postures.begin(), zero_posture(model));
   return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
@@ -266,9 +267,15 @@ void require_proofs_of_pairs(const RobotArguments& arguments, const RobotFilePla
 
 // With the pairs that need no test.
 RobotSpheres spheres_to_write(const RobotDescription& robot, const MeasuredCover& measured,
+                              const SemanticDescription& semantics,
                               const std::vector<DisabledPair>& disabled,
                               const SrdfJudgement& judgement) {
   RobotSpheres spheres = robot_spheres(robot, measured.cover);
+  for (const auto& enabled : enabled_only(semantics)) {
+    std::erase_if(spheres.self_collision_ignore, [&](const DisabledPair& pair) {
+      return std::minmax(pair.link_a, pair.link_b) == std::minmax(enabled.first, enabled.second);
+    });
+  }
   if (measured.pairs != nullptr) {
     add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
                       spheres.self_collision_ignore);
@@ -340,8 +347,9 @@ int cover_links(RobotArguments& arguments) {
   rehearse_robot_files(plan, robot, links);
   SemanticDescription semantics;  // a bad file is refused in time
   if (!arguments.srdf.empty()) semantics = read_srdf(arguments.srdf);
+  for (const std::string& warning : semantics.warnings) warn(warning);
   std::vector<DisabledPair> disabled;
-  add_missing_pairs(semantics.disabled_pairs, robot.model, disabled);
+  add_missing_pairs(disabled_among(semantics, links), robot.model, disabled);
   const FalseAlarmRun run(arguments.false_alarms, robot);
 
   StopOnInterruption interruption;
@@ -363,7 +371,7 @@ int cover_links(RobotArguments& arguments) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   SrdfJudgement judgement;
   if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
-  const RobotSpheres spheres = spheres_to_write(robot, measured, disabled, judgement);
+  const RobotSpheres spheres = spheres_to_write(robot, measured, semantics, disabled, judgement);
   const std::vector<PostureContact> contacts =
       contacts_in_postures(robot, semantics, spheres, measured);
   const Json summary =

@@ -5,6 +5,7 @@
 #include "robot/check/body_pairs.h"
 #include "robot/check/robot_scene.h"
 #include "robot/cover/alarm_sample.h"
+#include "robot/model/joint_positions.h"
 
 #include <cassert>
 #include <cstddef>
@@ -57,6 +58,7 @@ std::string_view kind_of(const PairStatus& status) {
 SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollisions& allowed,
                                     const SampleCollisionsOptions& options) {
   if (options.configurations == 0) throw Error("sample", "it has no configurations");
+  require_limits(robot);
   std::vector<internal::CheckedPiece> pieces;
   std::vector<std::vector<int>> pieces_of(robot.links().size());
   for (std::size_t link = 0; link < robot.links().size(); ++link) {

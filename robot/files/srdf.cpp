@@ -2,12 +2,16 @@
 #include "robot/files/srdf.h"
 
 #include "base/rounding.h"
+#include "base/text.h"
+#include "robot/files/urdf_files.h"
 #include "robot/files/xml_file.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace spherule {
@@ -15,11 +19,54 @@ namespace {
 
 using internal::XmlElement;
 
+std::string without_blanks(const std::string& name) {
+  constexpr const char* kBlanks = " \t\r\n";
+  const std::size_t first = name.find_first_not_of(kBlanks);
+  return first == std::string::npos
+             ? std::string()
+             : name.substr(first, name.find_last_not_of(kBlanks) + 1 - first);
+}
+
+// A name, and one that may be missing, as srdfdom reads them.
+std::string needed_name(const XmlElement& element, std::string_view attribute) {
+  std::string name = without_blanks(element.needed(attribute));
+  if (name.empty()) element.refuse("it has no " + std::string(attribute));
+  return name;
+}
+
+std::string name_or_none(const XmlElement& element, std::string_view attribute) {
+  return without_blanks(element.attribute(attribute).value_or(""));
+}
+
 std::vector<std::string> names_of(const XmlElement& group, std::string_view tag) {
   std::vector<std::string> names;
-  for (const XmlElement& child : group.children(tag)) names.push_back(child.needed("name"));
+  for (const XmlElement& child : group.children(tag)) names.push_back(needed_name(child, "name"));
   return names;
 }
+
+// Warns once of each kind of element that is not known there.
+class UnknownElements {
+ public:
+  void in(const XmlElement& element, std::initializer_list<std::string_view> known) {
+    for (const XmlElement& child : element.children()) {
+      const std::string tag(child.tag());
+      if (std::find(known.begin(), known.end(), tag) != known.end()) continue;
+      if (tag.starts_with("xacro:")) {
+        child.refuse(
+            "this is for xacro, which makes an SRDF of it: rename the file, so that it "
+            "ends in .xacro");
+      }
+      if (!warned_.emplace(element.tag(), tag).second) continue;
+      warnings_.push_back(child.place() + "it is not known there and is ignored");
+    }
+  }
+
+  std::vector<std::string> warnings() && { return std::move(warnings_); }
+
+ private:
+  std::set<std::pair<std::string, std::string>> warned_;
+  std::vector<std::string> warnings_;
+};
 
 // Refuses what was there before.
 template <class Key>
@@ -28,12 +75,12 @@ void remember(std::set<Key>& known, Key key, const XmlElement& element) {
 }
 
 JointGroup group_of(const XmlElement& element) {
-  JointGroup group{.name = element.needed("name"),
+  JointGroup group{.name = needed_name(element, "name"),
                    .links = names_of(element, "link"),
                    .joints = names_of(element, "joint"),
                    .subgroups = names_of(element, "group")};
   for (const XmlElement& chain : element.children("chain")) {
-    group.chains.push_back({chain.needed("base_link"), chain.needed("tip_link")});
+    group.chains.push_back({needed_name(chain, "base_link"), needed_name(chain, "tip_link")});
   }
   return group;
 }
@@ -69,24 +116,24 @@ void check_subgroups(const std::vector<XmlElement>& elements,
 }
 
 GroupState state_of(const XmlElement& element) {
-  GroupState state{.name = element.needed("name"), .group = element.needed("group")};
+  GroupState state{.name = needed_name(element, "name"), .group = needed_name(element, "group")};
   std::set<std::string> known;
   for (const XmlElement& joint : element.children("joint")) {
-    state.joints.push_back({joint.needed("name"), joint.needed_numbers("value")});
+    state.joints.push_back({needed_name(joint, "name"), joint.needed_numbers("value")});
     remember(known, state.joints.back().joint, joint);
   }
   return state;
 }
 
 DisabledPair pair_of(const XmlElement& element) {
-  DisabledPair pair{element.needed("link1"), element.needed("link2"),
+  DisabledPair pair{needed_name(element, "link1"), needed_name(element, "link2"),
                     element.attribute("reason").value_or("")};
   if (pair.link_a == pair.link_b) element.refuse("it is a link with itself");
   return pair;
 }
 
 LinkSpheres spheres_of(const XmlElement& element) {
-  LinkSpheres result{element.needed("link"), {}};
+  LinkSpheres result{needed_name(element, "link"), {}};
   for (const XmlElement& entry : element.children("sphere")) {
     const Sphere sphere{entry.needed_vector("center"), entry.needed_number("radius")};
     if (sphere.radius < 0.0) entry.refuse("its radius is below zero");
@@ -101,13 +148,18 @@ LinkSpheres spheres_of(const XmlElement& element) {
 }  // namespace
 
 SemanticDescription read_srdf(const std::filesystem::path& path) {
-  const internal::XmlFile file(path, "robot");
+  const internal::XmlFile file(path.string(), internal::urdf_text(path), "robot");
   const XmlElement root = file.root();
-  SemanticDescription result{.robot_name = root.needed("name")};
+  SemanticDescription result{.robot_name = needed_name(root, "name")};
+  UnknownElements unknown;
+  unknown.in(root, {"group", "group_state", "end_effector", "virtual_joint", "passive_joint",
+                    "joint_property", "disable_default_collisions", "enable_collisions",
+                    "disable_collisions", "link_sphere_approximation"});
 
   const std::vector<XmlElement> groups = root.children("group");
   std::set<std::string> group_names;
   for (const XmlElement& element : groups) {
+    unknown.in(element, {"link", "joint", "chain", "group"});
     result.groups.push_back(group_of(element));
     remember(group_names, result.groups.back().name, element);
   }
@@ -118,6 +170,7 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
 
   std::set<std::pair<std::string, std::string>> state_names;
   for (const XmlElement& element : root.children("group_state")) {
+    unknown.in(element, {"joint"});
     const GroupState& state = result.group_states.emplace_back(state_of(element));
     require_group(state.group, element);
     remember(state_names, {state.group, state.name}, element);
@@ -125,8 +178,8 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
   std::set<std::string> effector_names;
   for (const XmlElement& element : root.children("end_effector")) {
     const EndEffector& effector = result.end_effectors.emplace_back(
-        EndEffector{element.needed("name"), element.needed("group"), element.needed("parent_link"),
-                    element.attribute("parent_group").value_or("")});
+        EndEffector{needed_name(element, "name"), needed_name(element, "group"),
+                    needed_name(element, "parent_link"), name_or_none(element, "parent_group")});
     require_group(effector.group, element);
     if (!effector.parent_group.empty()) require_group(effector.parent_group, element);
     remember(effector_names, effector.name, element);
@@ -134,12 +187,66 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
   for (const XmlElement& element : root.children("disable_collisions")) {
     result.disabled_pairs.push_back(pair_of(element));
   }
+  for (const XmlElement& element : root.children("disable_default_collisions")) {
+    result.links_disabled_by_default.push_back(needed_name(element, "link"));
+  }
+  for (const XmlElement& element : root.children("enable_collisions")) {
+    const DisabledPair pair = pair_of(element);
+    result.enabled_pairs.emplace_back(pair.link_a, pair.link_b);
+  }
   std::set<std::string> approximated;
   for (const XmlElement& element : root.children("link_sphere_approximation")) {
+    unknown.in(element, {"sphere"});
     result.sphere_approximations.push_back(spheres_of(element));
     remember(approximated, result.sphere_approximations.back().link, element);
   }
+  result.warnings = std::move(unknown).warnings();
   return result;
+}
+
+namespace {
+
+using Names = std::pair<std::string, std::string>;
+
+Names in_order(const std::string& a, const std::string& b) {
+  return std::minmax(a, b);
+}
+
+}  // namespace
+
+std::vector<DisabledPair> disabled_among(const SemanticDescription& semantics,
+                                         std::span<const std::string> links) {
+  std::vector<DisabledPair> pairs = semantics.disabled_pairs;
+  std::set<Names> decided;
+  for (const DisabledPair& pair : pairs) decided.insert(in_order(pair.link_a, pair.link_b));
+  for (const auto& [first, second] : semantics.enabled_pairs) {
+    decided.insert(in_order(first, second));
+  }
+  const std::set<std::string> by_default(semantics.links_disabled_by_default.begin(),
+                                         semantics.links_disabled_by_default.end());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (!by_default.contains(links[i])) continue;
+    for (std::size_t j = 0; j < links.size(); ++j) {
+      // Of two such links the pair is the first one's.
+      if (i == j || (j < i && by_default.contains(links[j]))) continue;
+      if (decided.contains(in_order(links[i], links[j]))) continue;
+      pairs.push_back({links[i], links[j], std::string(kDisabledByDefault)});
+    }
+  }
+  return pairs;
+}
+
+std::vector<std::pair<std::string, std::string>> enabled_only(
+    const SemanticDescription& semantics) {
+  std::set<Names> disabled;
+  for (const DisabledPair& pair : semantics.disabled_pairs) {
+    disabled.insert(in_order(pair.link_a, pair.link_b));
+  }
+  std::vector<Names> pairs = semantics.enabled_pairs;
+  std::erase_if(pairs, [&](const Names& pair) {
+    return disabled.contains(in_order(pair.first, pair.second));
+  });
+  return pairs;
 }
 
 std::vector<std::string> unknown_names(const SemanticDescription& semantics,
@@ -173,6 +280,13 @@ std::vector<std::string> unknown_names(const SemanticDescription& semantics,
   for (const DisabledPair& pair : semantics.disabled_pairs) {
     check_link("disabled pair", pair.link_a);
     check_link("disabled pair", pair.link_b);
+  }
+  for (const std::string& link : semantics.links_disabled_by_default) {
+    check_link("disabled by default", link);
+  }
+  for (const auto& [first, second] : semantics.enabled_pairs) {
+    check_link("enabled pair", first);
+    check_link("enabled pair", second);
   }
   for (const LinkSpheres& spheres : semantics.sphere_approximations) {
     check_link("sphere approximation", spheres.link);

@@ -22,7 +22,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherule {
@@ -78,18 +81,35 @@ struct SemanticDescription {
   std::vector<GroupState> group_states{};
   std::vector<EndEffector> end_effectors{};
   std::vector<DisabledPair> disabled_pairs{};
+  // Links of which no pair is tested (disable_default_collisions), and pairs that are tested all
+  // the same (enable_collisions), those of neighbours, too; disabled_pairs decide where both do.
+  std::vector<std::string> links_disabled_by_default{};
+  std::vector<std::pair<std::string, std::string>> enabled_pairs{};
   std::vector<LinkSpheres> sphere_approximations{};  // in the link's frame, metres
+  std::vector<std::string> warnings{};               // what was not read, with its line
 };
 
-// Reads an SRDF file. Spheres of radius zero stand for none and are left out. Other elements
-// (virtual and passive joints, properties, defaults for collisions and exceptions from them) are
-// not read: without them no pair is disabled that is not listed here.
+// Reads an SRDF file as MoveIt (srdfdom) does, names without blanks around them. Spheres of radius
+// zero stand for none and are left out. Virtual and passive joints and properties of joints say
+// nothing of what is here and are not examined; of each kind of other elements there is a warning.
+// A file whose name ends in .xacro is given to the program `xacro`, as read_urdf() does.
 //
 // Throws Error, whose subject is the file and whose reason names the line and the element: for a
 // file that cannot be read or is no SRDF, a name that is missing, a number that is malformed or not
 // finite, a radius below zero, a pair of a link with itself, a group that is not there or contains
 // itself, and two groups, states of a group, end effectors or sphere approximations of one name.
 SemanticDescription read_srdf(const std::filesystem::path& path);
+
+// The reason of pairs that are disabled by the default of one of their links.
+inline constexpr std::string_view kDisabledByDefault = "disable_default_collisions";
+
+// All pairs that the description disables: those of its list, then those of two of these links of
+// which one is disabled by default, unless enabled_pairs has them.
+std::vector<DisabledPair> disabled_among(const SemanticDescription& semantics,
+                                         std::span<const std::string> links);
+
+// The pairs that the description enables and does not disable.
+std::vector<std::pair<std::string, std::string>> enabled_only(const SemanticDescription& semantics);
 
 // At most so many lines of unknown_names(): a long name of a group would stand in many.
 inline constexpr std::size_t kMostUnknownNames = 1000;

@@ -31,18 +31,28 @@ struct UrdfOptions {
   // Roots of packages: package://NAME/REST is the file REST below packages[NAME]; slashes before
   // NAME mean nothing (package:///NAME/REST). A package that is not given is searched for upwards
   // from the URDF file: a folder with a package.xml of that name, or in such a folder one that is
-  // called as the package and has one.
+  // called as the package and has one; then in the folders of ROS_PACKAGE_PATH, and in share/ below
+  // those of AMENT_PREFIX_PATH; then a folder above the file, or in one of these, that is just
+  // called so and has no package.xml of another name.
   std::map<std::string, std::filesystem::path> packages{};
   // Whether a mesh that is missing is an error. Otherwise its path is what the file names.
   bool require_visual_meshes = true;
   bool require_collision_meshes = true;
 };
 
-// Reads a robot from a URDF file (version 1.0): joints of the types fixed, revolute, continuous and
-// prismatic, mimics, and the visual and collision shapes of every link: meshes, boxes, cylinders
-// and spheres. Lengths in metres, angles in radians. Links and joints come depth first: a link,
-// then for each joint below it, in the order of the file, what hangs on it. Inertias, materials and
-// whatever else the file holds are not examined.
+// Reads a robot from a URDF file (versions 1.0 to 1.2): joints, mimics, and the visual and
+// collision shapes of every link: meshes, boxes, cylinders, capsules (their `length` is that of the
+// straight part) and spheres. Lengths in metres, angles in radians. Links and joints come depth
+// first: a link, then for each joint below it, in the order of the file, what hangs on it.
+// Inertias, materials and whatever else the file holds are not examined.
+//
+// A planar joint NAME becomes three, with links of these names between them: prismatic ones, NAME/x
+// and NAME/y, in the plane across its axis, and a continuous one about it, NAME/theta. A floating
+// one becomes six, NAME/x, NAME/y, NAME/z, NAME/yaw, NAME/pitch and NAME/roll. Their lengths are
+// limited to 100 m.
+//
+// Where the limits of a revolute or prismatic joint are missing or reversed, there is a warning,
+// and it has none that are known.
 //
 // A file whose name ends in .xacro is given to the program `xacro`, without arguments, and what
 // that writes is read in its place; lines that errors name are then lines of that.
@@ -59,8 +69,8 @@ struct UrdfOptions {
 // file that cannot be read, is no URDF, needs xacro (under another name), or is one for xacro where
 // that fails or is not found; a number that is malformed or not finite, and attributes beside those
 // that give a pose, an axis, a mimic or a shape; two origins or shapes where one belongs, other
-// shapes, and negative sizes; planar and floating joints, a moving joint whose axis is zero
-// or whose limits are missing or reversed, mimics of what does not move or of themselves; names
+// shapes, and negative sizes; a moving joint whose axis is zero, mimics of what does not move, is
+// planar or floating, or of themselves; versions after 1.2; names
 // that are not unique, a link below two joints or above itself, none or several roots; and missing
 // meshes and packages.
 RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions& options = {});

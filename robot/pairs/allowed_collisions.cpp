@@ -10,7 +10,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -83,6 +87,22 @@ void AllowedCollisions::allow(std::span<const std::pair<std::string, std::string
   std::vector<std::pair<int, int>> found;
   for (const auto& [first, second] : pairs) found.emplace_back(link(first), link(second));
   for (const auto& [first, second] : found) allow(first, second, AllowedReason::kGiven);
+}
+
+void AllowedCollisions::apply(const SemanticDescription& semantics) {
+  std::map<std::string_view, int> links;
+  for (std::size_t i = 0; i < names_.size(); ++i) links.emplace(names_[i], static_cast<int>(i));
+  const auto with_links = [&](const std::string& first, const std::string& second, auto action) {
+    const auto a = links.find(first);
+    const auto b = links.find(second);
+    if (a != links.end() && b != links.end()) action(a->second, b->second);
+  };
+  for (const DisabledPair& pair : disabled_among(semantics, names_)) {
+    with_links(pair.link_a, pair.link_b, [&](int a, int b) { allow(a, b, AllowedReason::kGiven); });
+  }
+  for (const auto& [first, second] : enabled_only(semantics)) {
+    with_links(first, second, [&](int a, int b) { set(a, b, AllowedReason::kTested); });
+  }
 }
 
 void AllowedCollisions::allow(int first, int second, AllowedReason reason) {
@@ -172,13 +192,11 @@ std::vector<DisabledPair> pairs_proved_never(const RobotModel& robot, const Link
 
 void add_missing_pairs(std::span<const DisabledPair> pairs, const RobotModel& robot,
                        std::vector<DisabledPair>& known) {
+  std::set<std::pair<std::string, std::string>> names;
+  for (const DisabledPair& pair : known) names.insert(std::minmax(pair.link_a, pair.link_b));
   for (const DisabledPair& pair : pairs) {
     if (robot.find_link(pair.link_a) < 0 || robot.find_link(pair.link_b) < 0) continue;
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const DisabledPair& other) {
-      return (other.link_a == pair.link_a && other.link_b == pair.link_b) ||
-             (other.link_a == pair.link_b && other.link_b == pair.link_a);
-    });
-    if (!is_known) known.push_back(pair);
+    if (names.insert(std::minmax(pair.link_a, pair.link_b)).second) known.push_back(pair);
   }
 }
 

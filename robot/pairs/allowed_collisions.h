@@ -70,6 +70,10 @@ class AllowedCollisions {
   void allow(int first, int second, AllowedReason reason);
   // The pairs that an SRDF disables. Throws Error for names that are no links, before any is taken.
   void allow(std::span<const std::pair<std::string, std::string>> pairs);
+  // As an SRDF says: the pairs that it disables, by the default of their links, too, are allowed,
+  // and those that it enables are tested, neighbours or not. Those of other robots' links are
+  // passed over.
+  void apply(const SemanticDescription& semantics);
   // The pairs that are proved never to touch, as kProvedNever: beyond the limits of the joints, or
   // with padding, they are not tested either. A scene that is given the proofs
   // (RobotScene::set_link_pairs()) tests them there. Throws Error for proofs of other links, joints
