@@ -2,7 +2,6 @@
 #include "robot/files/srdf.h"
 
 #include "base/rounding.h"
-#include "base/text.h"
 #include "robot/files/urdf_files.h"
 #include "robot/files/xml_file.h"
 
@@ -19,28 +18,9 @@ namespace {
 
 using internal::XmlElement;
 
-std::string without_blanks(const std::string& name) {
-  constexpr const char* kBlanks = " \t\r\n";
-  const std::size_t first = name.find_first_not_of(kBlanks);
-  return first == std::string::npos
-             ? std::string()
-             : name.substr(first, name.find_last_not_of(kBlanks) + 1 - first);
-}
-
-// A name, and one that may be missing, as srdfdom reads them.
-std::string needed_name(const XmlElement& element, std::string_view attribute) {
-  std::string name = without_blanks(element.needed(attribute));
-  if (name.empty()) element.refuse("it has no " + std::string(attribute));
-  return name;
-}
-
-std::string name_or_none(const XmlElement& element, std::string_view attribute) {
-  return without_blanks(element.attribute(attribute).value_or(""));
-}
-
 std::vector<std::string> names_of(const XmlElement& group, std::string_view tag) {
   std::vector<std::string> names;
-  for (const XmlElement& child : group.children(tag)) names.push_back(needed_name(child, "name"));
+  for (const XmlElement& child : group.children(tag)) names.push_back(child.needed("name"));
   return names;
 }
 
@@ -75,12 +55,12 @@ void remember(std::set<Key>& known, Key key, const XmlElement& element) {
 }
 
 JointGroup group_of(const XmlElement& element) {
-  JointGroup group{.name = needed_name(element, "name"),
+  JointGroup group{.name = element.needed("name"),
                    .links = names_of(element, "link"),
                    .joints = names_of(element, "joint"),
                    .subgroups = names_of(element, "group")};
   for (const XmlElement& chain : element.children("chain")) {
-    group.chains.push_back({needed_name(chain, "base_link"), needed_name(chain, "tip_link")});
+    group.chains.push_back({chain.needed("base_link"), chain.needed("tip_link")});
   }
   return group;
 }
@@ -116,24 +96,24 @@ void check_subgroups(const std::vector<XmlElement>& elements,
 }
 
 GroupState state_of(const XmlElement& element) {
-  GroupState state{.name = needed_name(element, "name"), .group = needed_name(element, "group")};
+  GroupState state{.name = element.needed("name"), .group = element.needed("group")};
   std::set<std::string> known;
   for (const XmlElement& joint : element.children("joint")) {
-    state.joints.push_back({needed_name(joint, "name"), joint.needed_numbers("value")});
+    state.joints.push_back({joint.needed("name"), joint.needed_numbers("value")});
     remember(known, state.joints.back().joint, joint);
   }
   return state;
 }
 
 DisabledPair pair_of(const XmlElement& element) {
-  DisabledPair pair{needed_name(element, "link1"), needed_name(element, "link2"),
+  DisabledPair pair{element.needed("link1"), element.needed("link2"),
                     element.attribute("reason").value_or("")};
   if (pair.link_a == pair.link_b) element.refuse("it is a link with itself");
   return pair;
 }
 
 LinkSpheres spheres_of(const XmlElement& element) {
-  LinkSpheres result{needed_name(element, "link"), {}};
+  LinkSpheres result{element.needed("link"), {}};
   for (const XmlElement& entry : element.children("sphere")) {
     const Sphere sphere{entry.needed_vector("center"), entry.needed_number("radius")};
     if (sphere.radius < 0.0) entry.refuse("its radius is below zero");
@@ -150,7 +130,7 @@ LinkSpheres spheres_of(const XmlElement& element) {
 SemanticDescription read_srdf(const std::filesystem::path& path) {
   const internal::XmlFile file(path.string(), internal::urdf_text(path), "robot");
   const XmlElement root = file.root();
-  SemanticDescription result{.robot_name = needed_name(root, "name")};
+  SemanticDescription result{.robot_name = root.needed("name")};
   UnknownElements unknown;
   unknown.in(root, {"group", "group_state", "end_effector", "virtual_joint", "passive_joint",
                     "joint_property", "disable_default_collisions", "enable_collisions",
@@ -178,8 +158,8 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
   std::set<std::string> effector_names;
   for (const XmlElement& element : root.children("end_effector")) {
     const EndEffector& effector = result.end_effectors.emplace_back(
-        EndEffector{needed_name(element, "name"), needed_name(element, "group"),
-                    needed_name(element, "parent_link"), name_or_none(element, "parent_group")});
+        EndEffector{element.needed("name"), element.needed("group"), element.needed("parent_link"),
+                    element.attribute("parent_group").value_or("")});
     require_group(effector.group, element);
     if (!effector.parent_group.empty()) require_group(effector.parent_group, element);
     remember(effector_names, effector.name, element);
@@ -188,7 +168,7 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
     result.disabled_pairs.push_back(pair_of(element));
   }
   for (const XmlElement& element : root.children("disable_default_collisions")) {
-    result.links_disabled_by_default.push_back(needed_name(element, "link"));
+    result.links_disabled_by_default.push_back(element.needed("link"));
   }
   for (const XmlElement& element : root.children("enable_collisions")) {
     const DisabledPair pair = pair_of(element);

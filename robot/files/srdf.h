@@ -89,7 +89,7 @@ struct SemanticDescription {
   std::vector<std::string> warnings{};               // what was not read, with its line
 };
 
-// Reads an SRDF file as MoveIt (srdfdom) does, names without blanks around them. Spheres of radius
+// Reads an SRDF file by the meaning that MoveIt (srdfdom) gives to it. Spheres of radius
 // zero stand for none and are left out. Virtual and passive joints and properties of joints say
 // nothing of what is here and are not examined; of each kind of other elements there is a warning.
 // A file whose name ends in .xacro is given to the program `xacro`, as read_urdf() does.

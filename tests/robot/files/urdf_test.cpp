@@ -296,6 +296,12 @@ TEST(ReadUrdf, WarnsOfLimitsThatCannotBeUsed) {
   require_limits(robot.model);
 }
 
+std::vector<Pose> poses_of(const RobotDescription& robot, const std::vector<double>& positions) {
+  std::vector<Pose> poses;
+  forward_kinematics(robot.model, positions, poses);
+  return poses;
+}
+
 // x = 1, y = 2 and a quarter of a turn of the joint's frame, which stands at (0, 0, 5).
 TEST(ReadUrdf, PlanarJointsAreThreeJoints) {
   const RobotDescription robot =
@@ -305,12 +311,11 @@ TEST(ReadUrdf, PlanarJointsAreThreeJoints) {
   EXPECT_EQ(robot.links[1].name, "elbow/x");
   EXPECT_EQ(robot.links[3].name, "arm");
   EXPECT_EQ(robot.model.joints()[2].name, "elbow/theta");
-  const std::vector<Pose> poses =
-      forward_kinematics(robot.model, std::vector{1.0, 2.0, 0.5 * std::numbers::pi});
+  const std::vector<Pose> poses = poses_of(robot, {1.0, 2.0, 0.5 * std::numbers::pi});
   EXPECT_TRUE((poses[3] * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 5), 1e-15));
   // Across x: the frame's y stays.
   const RobotDescription upright = read_text(arm_of("planar", "<axis xyz='1 0 0'/>"));
-  const Pose moved = forward_kinematics(upright.model, std::vector{1.0, 2.0, 0.0}).back();
+  const Pose moved = poses_of(upright, {1.0, 2.0, 0.0}).back();
   EXPECT_TRUE(moved.translation().isApprox(Eigen::Vector3d(0, 2, -1), 1e-15));
   EXPECT_EQ(read_text(arm_of("planar", "")).model.joints()[0].axis, Eigen::Vector3d::UnitX());
 }
@@ -320,7 +325,7 @@ TEST(ReadUrdf, FloatingJointsAreSixJoints) {
   ASSERT_EQ(robot.model.variable_count(), 6);
   EXPECT_EQ(robot.model.joints()[3].name, "elbow/yaw");
   const std::vector<double> configuration = {1.0, 2.0, 3.0, 0.3, -0.4, 0.5};
-  const Pose pose = forward_kinematics(robot.model, configuration).back();
+  const Pose pose = poses_of(robot, configuration).back();
   EXPECT_EQ(pose.translation(), Eigen::Vector3d(1, 2, 8));
   const Eigen::Matrix3d turned = (Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
                                   Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitY()) *
