@@ -126,10 +126,12 @@ TEST_F(RobotInputTest, LimitsAreNeededOnlyWhereTheyAreUsed) {
   EXPECT_TRUE(exists("out/one.curobo.yml"));
   expect_free(reversed);
   expect_exit(0, "view one.urdf -o one.html");
-  expect_refusals(
-      {{"check one.urdf empty.json path.csv --enforce-limits",
-        "--enforce-limits: joint pan: it has no limits"},
-       {"robot one.urdf -o out --false-alarms 1%", "--false-alarms: joint pan: it has no limits"}});
+  const std::string reason =
+      ": joint pan: it has no limits, which are needed here: correct its <limit> in the URDF\n";
+  EXPECT_EQ(expect_exit(2, "check one.urdf empty.json path.csv --enforce-limits").err,
+            warning + "spherule: --enforce-limits" + reason);
+  EXPECT_EQ(expect_exit(2, "robot one.urdf -o out --false-alarms 1%").err,
+            warning + "spherule: --false-alarms" + reason);
 }
 
 TEST_F(RobotInputTest, PlanarJointsMoveInTheirPlane) {
