@@ -61,7 +61,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return bad_input(describe_usage_error(app, error));
   } catch (const Error& error) {
-    const std::string message = error.what();
+    const std::string message = error.subject() + ": " + error.reason();  // with zero bytes
     return bad_input(message + wrong_file_hint(app, message));
   }
   if (!std::cout.flush()) return bad_input("standard output: cannot be written");

@@ -174,11 +174,12 @@ struct AuditRobotArguments {
 };
 
 std::vector<std::vector<double>> configurations_of(const TrajectoryArguments& arguments,
-                                                   const RobotModel& model) {
+                                                   const std::string& srdf,
+                                                   const RobotDescription& robot) {
   std::vector<std::vector<double>> configurations;
   if (arguments.file.empty()) return configurations;
-  const Trajectory trajectory = read_configurations(arguments, model).trajectory;
-  require_provable(model, arguments, trajectory);
+  const Trajectory trajectory = read_configurations(arguments, robot, srdf).trajectory;
+  require_provable(robot.model, arguments, trajectory);
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const auto positions = trajectory.configuration(i);
     configurations.emplace_back(positions.begin(), positions.end());
@@ -282,12 +283,18 @@ AuditInput read_input(const AuditRobotArguments& arguments) {
   const RobotSpheres& spheres = given.file.spheres;
   check_link(arguments, robot.model, spheres);
   require_known_links(robot.model, arguments.spheres, spheres, arguments.ignores_unknown_links);
+  // Bad files are refused before the work that they are for.
+  if (!arguments.pairs.srdf.empty()) read_srdf(arguments.pairs.srdf);
+  if (!arguments.pairs.pairs.empty()) {
+    load_link_pairs(arguments.pairs.pairs, robot.model, link_bodies(robot, {.geometry = geometry}));
+  }
   const bool is_shrunk = has_shrinking_buffers(spheres);
   if (!arguments.repaired.empty()) check_repair(arguments, given.file, is_shrunk);
-  RobotAuditOptions options{.geometry = geometry,
-                            .min_external_diameter = arguments.min_external.value_or(0.0),
-                            .configurations = configurations_of(arguments.poses, robot.model),
-                            .threads = arguments.threads};
+  RobotAuditOptions options{
+      .geometry = geometry,
+      .min_external_diameter = arguments.min_external.value_or(0.0),
+      .configurations = configurations_of(arguments.poses, arguments.pairs.srdf, robot),
+      .threads = arguments.threads};
   if (arguments.max_error) options.max_error = *arguments.max_error;
   return {.robot = std::move(robot),
           .given = std::move(given),
@@ -307,7 +314,11 @@ RobotAuditReport audited(const AuditRobotArguments& arguments, const AuditInput&
     ProgressBar bar;
     RobotAuditOptions options = input.options;
     options.progress = bar.callback();
-    in_file(arguments.urdf, [&] {
+    const auto is_of_spheres = [](const Error& error) {
+      return error.subject().find(", sphere ") != std::string::npos ||
+             error.reason().starts_with("has a sphere");
+    };
+    const auto audit_and_repair = [&] {
       report.audit = audit_robot(input.robot, shrunk_by_buffers(spheres), options);
       if (arguments.repaired.empty()) return;
       report.repair = repair_robot(input.robot, spheres.links,
@@ -315,7 +326,9 @@ RobotAuditReport audited(const AuditRobotArguments& arguments, const AuditInput&
                                     .max_error = arguments.max_error.value_or(0.0),
                                     .threads = arguments.threads,
                                     .progress = options.progress});
-    });
+    };
+    in_file(arguments.urdf,
+            [&] { blame_file_if(is_of_spheres, arguments.spheres, audit_and_repair); });
   }
   if (!arguments.pairs.is_empty()) {
     report.pairs = pair_kinds(input.robot, spheres, input.options.geometry, arguments.pairs,
@@ -393,6 +406,7 @@ void add_inputs(CLI::App& command, AuditRobotArguments& arguments) {
            "then about these");
   add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
       ->needs("--poses");
+  add_at_option(command, arguments.poses)->needs("--poses");
   add_file(command, "--srdf", arguments.pairs.srdf,
            "The robot's SRDF: tell the pairs of links apart, and judge those it disables");
   add_file(command, "--pairs", arguments.pairs.pairs,

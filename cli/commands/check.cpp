@@ -16,6 +16,7 @@
 #include "robot/check/scene_setup.h"
 #include "robot/cover/goal_cover.h"
 #include "robot/files/robot_description.h"
+#include "robot/model/joint_positions.h"
 #include "robot/pairs/link_pairs.h"
 
 #include <CLI/CLI.hpp>
@@ -74,8 +75,8 @@ std::string advice(const CheckArguments& arguments, const CheckReport& report) {
   std::vector<std::string> finer = {"check", arguments.urdf, arguments.scene,
                                     arguments.trajectory.file};
   repeat(*arguments.command,
-         {"--edges", "--continuous", "--degrees", "--enforce-limits", "--resolution", "--effort",
-          "--pairs", "--geometry", "--package"},
+         {"--edges", "--continuous", "--degrees", "--at", "--enforce-limits", "--resolution",
+          "--effort", "--pairs", "--geometry", "--package"},
          finer);
   finer.insert(finer.end(),
                {"--max-error", internal::number_text(0.5 * arguments.cover.max_error)});
@@ -107,7 +108,7 @@ RobotDescription read_checked_robot(const CheckArguments& arguments, LinkGeometr
   RobotDescription robot =
       arguments.spheres.empty()
           ? read_robot(arguments.urdf, arguments.packages, geometry)
-          : read_urdf(arguments.urdf, urdf_options(arguments.packages, needed));
+          : read_urdf_with_warnings(arguments.urdf, arguments.packages, needed);
   if (robot.links.size() > AllowedCollisions::kMaxLinks) {
     throw Error(arguments.urdf, "has more than " + std::to_string(AllowedCollisions::kMaxLinks) +
                                     " links, too many to be checked");
@@ -148,13 +149,17 @@ struct CheckInput {
 };
 
 CheckInput read_input(const CheckArguments& arguments) {
+  require_resolution(arguments.resolution);
   RobotCoverOptions options = arguments.cover;
   options.geometry = geometry_named(arguments.geometry);
   RobotDescription robot = read_checked_robot(arguments, options.geometry);
   const RobotModel& model = robot.model;
   SceneDescription scene = read_scene(arguments.scene);
-  TrajectoryInput input = read_configurations(arguments.trajectory, model);
+  TrajectoryInput input = read_configurations(arguments.trajectory, robot, scene.srdf.value_or(""));
   const Trajectory& trajectory = input.trajectory;
+  if (arguments.enforces_limits) {
+    blame_file("--enforce-limits", [&] { require_limits(model); });
+  }
   if (!arguments.view.empty() && trajectory.size() == 0) {
     throw Error("--view", "there is nothing to show: this shard of the trajectory is empty");
   }
@@ -169,7 +174,6 @@ CheckInput read_input(const CheckArguments& arguments) {
       require_provable(model, arguments.trajectory, ends_of_motions(model, trajectory));
     }
   }
-  require_resolution(arguments.resolution);
   return {.options = std::move(options),
           .robot = std::move(robot),
           .scene = std::move(scene),
@@ -185,7 +189,9 @@ struct CheckSetup {
 };
 
 CheckSetup set_up(const CheckArguments& arguments, const CheckInput& input) {
-  in_file(arguments.scene, [&] { check_scene_names(input.robot.model, input.scene); });
+  if (arguments.spheres.empty()) {
+    in_file(arguments.scene, [&] { check_scene_names(input.robot.model, input.scene); });
+  }
   std::shared_ptr<const LinkPairs> proofs;
   if (!arguments.pairs.empty()) {
     proofs = std::make_shared<const LinkPairs>(load_link_pairs(
@@ -281,6 +287,7 @@ void add_motions(CLI::App& command, CheckArguments& arguments) {
       ->needs(edges);
   add_degrees_flag(command, "Angles of the trajectory are in degrees, lengths in metres",
                    arguments.trajectory);
+  add_at_option(command, arguments.trajectory);
   command.add_flag("--enforce-limits", arguments.enforces_limits,
                    "Configurations outside the joint limits are not free (default: a warning)");
   add_shard_option(command,

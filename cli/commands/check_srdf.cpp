@@ -62,7 +62,9 @@ std::string describe(const SrdfJudgement& judgement, const RobotModel& robot) {
                    ", though not meant to:\n", wrong);
   }
   if (!decided.empty()) {
-    decided = "touching by somebody's decision (Default, Always, User):\n" + decided;
+    decided =
+        "touching by somebody's decision (Default, Always, User, disable_default_collisions):\n" +
+        decided;
   }
   if (!open.empty()) open = "neither proved nor touching:\n" + open;
   std::string addable;
@@ -97,7 +99,8 @@ int check_srdf(const CheckSrdfArguments& arguments) {
   const LinkGeometry geometry = geometry_named(arguments.geometry);
   const RobotDescription robot = read_robot(arguments.urdf, arguments.packages, geometry);
   const SemanticDescription semantics = read_srdf(arguments.srdf);
-  if (semantics.disabled_pairs.empty()) {
+  for (const std::string& warning : semantics.warnings) warn(warning);
+  if (semantics.disabled_pairs.empty() && semantics.links_disabled_by_default.empty()) {
     throw Error(arguments.srdf, "it disables no pair of links: is it an SRDF?");
   }
   const std::vector<LinkBody> bodies =
@@ -138,7 +141,8 @@ void add_check_srdf(CLI::App& app, int& exit_code) {
   command->footer(to_text(
       {.text = "A pair is proved never to touch within the limits of the joints, by the meshes "
                "with their insides, or a posture is shown in which it does. The reasons Default, "
-               "Always and User are decisions; every other one, and none, says that the links are "
+               "Always and User and the default of a link are decisions; every other one, and "
+               "none, says that the links are "
                "apart, and touching is then wrong but for links that one joint joins, or none "
                "moves against each other.",
        .exit_codes = "0 every pair that is said to be apart, but for these, is proved never to "

@@ -19,6 +19,7 @@
 #ifdef SPHERULE_HAS_ROBOT
 #include "robot/files/robot_description.h"
 #include "robot/formats/sphere_formats.h"
+#include "robot/model/joint_positions.h"
 #endif
 
 #include <CLI/CLI.hpp>
@@ -103,6 +104,7 @@ std::string describe_model(const std::string& file) {
 #ifdef SPHERULE_HAS_ROBOT
 std::string describe(const Joint& joint) {
   if (joint.type == JointType::kContinuous) return one_line(joint.name) + ": continuous";
+  if (!has_limits(joint)) return one_line(joint.name) + ": no limits";
   return concat(one_line(joint.name), ": ", joint.lower, " to ", joint.upper,
                 joint.turns() ? " rad" : " m");
 }
@@ -118,6 +120,7 @@ std::string describe_urdf(const std::string& file) {
   const RobotDescription robot = read_urdf(
       file, {.packages = {}, .require_visual_meshes = false, .require_collision_meshes = false});
   const RobotModel& model = robot.model;
+  for (const std::string& warning : robot.warnings) warn(warning);
   const auto visual = std::ranges::count(
       robot.links, false, [](const LinkDescription& link) { return link.visual.empty(); });
   const auto collision = std::ranges::count(
@@ -135,11 +138,14 @@ std::string describe_urdf(const std::string& file) {
 
 std::string describe_srdf(const std::string& file) {
   const SemanticDescription semantics = read_srdf(file);
+  for (const std::string& warning : semantics.warnings) warn(warning);
   return concat("SRDF of robot: ", one_line(semantics.robot_name),
                 "\ngroups: ", semantics.groups.size(),
                 ", named states: ", semantics.group_states.size(),
                 ", end effectors: ", semantics.end_effectors.size(),
                 "\ndisabled pairs of links: ", semantics.disabled_pairs.size(),
+                ", links disabled by default: ", semantics.links_disabled_by_default.size(),
+                ", enabled pairs: ", semantics.enabled_pairs.size(),
                 "\nspheres: ", count_spheres(semantics.sphere_approximations), "\n");
 }
 

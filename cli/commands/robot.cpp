@@ -191,6 +191,18 @@ std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeome
   return names;
 }
 
+// Throws Error for options of a link that is not covered.
+void require_covered(const RobotDescription& robot, const std::vector<std::string>& links,
+                     const RobotCoverOptions& options) {
+  for (const auto& of_link : options.links) {
+    const std::string& name = of_link.first;
+    robot.model.require_link(name);
+    if (std::find(links.begin(), links.end(), name) == links.end()) {
+      throw Error("link '" + name + "'", "has options and no geometry to cover");
+    }
+  }
+}
+
 // Whether the links are as other commands read them: neither padded nor welded.
 bool has_plain_links(const RobotArguments& arguments) {
   const auto links = link_options(arguments.links);
@@ -232,6 +244,7 @@ std::vector<PostureContact> contacts_in_postures(const RobotDescription& robot,
   const RobotModel model = with_spheres(robot.model, spheres.links);
   AllowedCollisions allowed(model);
   allowed.allow(spheres.self_collision_ignore);
+  allowed.apply(semantics);
   std::vector<NamedPosture> postures = group_postures(model, semantics);
   postures.insert(postures.begin(), zero_posture(model));
   return contacts_in(postures, model, measured.bodies, allowed, measured.pairs);
@@ -261,9 +274,15 @@ void require_proofs_of_pairs(const RobotArguments& arguments, const RobotFilePla
 
 // With the pairs that need no test.
 RobotSpheres spheres_to_write(const RobotDescription& robot, const MeasuredCover& measured,
+                              const SemanticDescription& semantics,
                               const std::vector<DisabledPair>& disabled,
                               const SrdfJudgement& judgement) {
   RobotSpheres spheres = robot_spheres(robot, measured.cover);
+  for (const auto& enabled : enabled_only(semantics)) {
+    std::erase_if(spheres.self_collision_ignore, [&](const DisabledPair& pair) {
+      return std::minmax(pair.link_a, pair.link_b) == std::minmax(enabled.first, enabled.second);
+    });
+  }
   if (measured.pairs != nullptr) {
     add_missing_pairs(pairs_proved_never(robot.model, *measured.pairs), robot.model,
                       spheres.self_collision_ignore);
@@ -329,14 +348,16 @@ int cover_links(RobotArguments& arguments) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
   }
   const std::vector<std::string> links = links_to_cover(robot, options.geometry);
+  in_file(arguments.urdf, [&] { require_covered(robot, links, options); });
   const std::vector<fs::path> outputs =
       in_file(arguments.urdf, [&] { return plan.all(robot, links); });
   check_places(arguments, outputs);
   rehearse_robot_files(plan, robot, links);
   SemanticDescription semantics;  // a bad file is refused in time
   if (!arguments.srdf.empty()) semantics = read_srdf(arguments.srdf);
+  for (const std::string& warning : semantics.warnings) warn(warning);
   std::vector<DisabledPair> disabled;
-  add_missing_pairs(semantics.disabled_pairs, robot.model, disabled);
+  add_missing_pairs(disabled_among(semantics, links), robot.model, disabled);
   const FalseAlarmRun run(arguments.false_alarms, robot);
 
   StopOnInterruption interruption;
@@ -358,7 +379,7 @@ int cover_links(RobotArguments& arguments) {
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   SrdfJudgement judgement;
   if (measured.pairs != nullptr) judgement = judge_srdf(robot.model, semantics, *measured.pairs);
-  const RobotSpheres spheres = spheres_to_write(robot, measured, disabled, judgement);
+  const RobotSpheres spheres = spheres_to_write(robot, measured, semantics, disabled, judgement);
   const std::vector<PostureContact> contacts =
       contacts_in_postures(robot, semantics, spheres, measured);
   const Json summary =

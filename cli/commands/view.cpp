@@ -104,6 +104,7 @@ void add_view(CLI::App& app, int& exit_code) {
   add_degrees_flag(*command, "Angles of --poses are in degrees, lengths in metres",
                    arguments->robot.postures)
       ->needs(poses);
+  add_at_option(*command, arguments->robot.postures)->needs(poses);
   add_unknown_links_flag(*command, arguments->robot.ignores_unknown_links);
 #endif
   command->footer(to_text(

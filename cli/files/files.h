@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,9 @@ auto blame_file_if(IsOfFile is_of_file, const std::string& file, Action action) 
     return action();
   } catch (const Exception& error) {
     if (!is_of_file(error)) throw;
+    if constexpr (std::is_same_v<Exception, Error>) {
+      throw Error(file, error.subject() + ": " + error.reason());  // what() ends at a zero byte
+    }
     throw Error(file, error.what());
   }
 }

@@ -14,8 +14,10 @@
 #include "spheretree/sphere_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -122,7 +124,7 @@ std::vector<ViewItem> report_items(const RobotDescription& robot, const Json& js
 }
 
 // As many numbers a posture as there are variables, and the lines of the file.
-Json view_postures(const TrajectoryArguments& arguments, const RobotModel& robot) {
+Json view_postures(const TrajectoryArguments& arguments, const RobotDescription& robot) {
   const Trajectory trajectory = read_configurations(arguments, robot).trajectory;
   const std::vector<float> positions(trajectory.positions.begin(), trajectory.positions.end());
   return {{"file", arguments.file},
@@ -169,19 +171,31 @@ Json view_pose(const Pose& pose) {
   return Json::array({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
+namespace {
+
+// What its slider goes through: a turn or two metres where the joint has no limits.
+std::pair<double, double> slider_range(const Joint& joint) {
+  if (std::isfinite(joint.upper)) return {joint.lower, joint.upper};
+  const double half = joint.turns() ? std::numbers::pi : 1.0;
+  return {-half, half};
+}
+
+}  // namespace
+
 Json view_robot(const RobotDescription& robot) {
   Json json{{"name", robot.name}, {"links", Json::array()}, {"joints", Json::array()}};
   for (const Link& link : robot.model.links()) {
     json["links"].push_back({{"name", link.name}, {"joint", link.parent_joint}});
   }
   for (const Joint& joint : robot.model.joints()) {
+    const std::pair<double, double> range = slider_range(joint);
     json["joints"].push_back({{"name", joint.name},
                               {"type", name_of(joint.type)},
                               {"parent", joint.parent_link},
                               {"origin", view_pose(joint.parent_from_joint)},
                               {"axis", to_json(joint.axis)},
-                              {"lower", joint.lower},
-                              {"upper", joint.upper},
+                              {"lower", range.first},
+                              {"upper", range.second},
                               {"variable", joint.variable},
                               {"multiplier", joint.mimics < 0 ? 1.0 : joint.multiplier},
                               {"offset", joint.mimics < 0 ? 0.0 : joint.offset}});
@@ -245,11 +259,11 @@ void add_robot(const std::vector<std::string>& files, const RobotViewOptions& op
   }
   std::vector<LinkGeometry> shown;
   for (const std::string& name : options.geometry) shown.push_back(geometry_named(name));
-  const RobotDescription robot = read_urdf(*urdf, urdf_options(options.packages, shown));
+  const RobotDescription robot = read_urdf_with_warnings(*urdf, options.packages, shown);
   scene.title = *urdf;
   scene.robot = view_robot(robot);
   if (!options.postures.file.empty()) {
-    scene.robot["postures"] = view_postures(options.postures, robot.model);
+    scene.robot["postures"] = view_postures(options.postures, robot);
   }
   for (const std::string& name : options.geometry) {
     ViewItem item = view_meshes(robot, geometry_named(name), name);

@@ -191,9 +191,10 @@ PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
                   .proofs = proofs_of(robot, geometry, sources, threads)};
   std::vector<DisabledPair> given;
   add_missing_pairs(spheres.self_collision_ignore, robot.model, given);
+  SemanticDescription semantics;
   if (!sources.srdf.empty()) {
-    const SemanticDescription semantics = read_srdf(sources.srdf);
-    add_missing_pairs(semantics.disabled_pairs, robot.model, given);
+    semantics = read_srdf(sources.srdf);
+    for (const std::string& warning : semantics.warnings) warn(warning);
     if (kinds.proofs != nullptr) {
       kinds.judgement = judge_srdf(robot.model, semantics, *kinds.proofs);
     }
@@ -205,6 +206,7 @@ PairKinds pair_kinds(const RobotDescription& robot, const RobotSpheres& spheres,
   }
   AllowedCollisions allowed(kinds.model);
   allowed.allow(given);
+  allowed.apply(semantics);
   kinds.pairs = pair_statuses(kinds.model, allowed, kinds.proofs);
   return kinds;
 }

@@ -3,12 +3,14 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "cli/files/files.h"
 #include "cli/files/warnings.h"
 #include "cli/help/help.h"
 #include "cli/options/options.h"
 #include "cli/robots/pair_report.h"
 #include "cli/robots/robot_input.h"
 #include "cli/text/print.h"
+#include "robot/model/joint_positions.h"
 #include "robot/model/robot_model.h"
 #include "simplifier/option_record.h"
 
@@ -188,6 +190,7 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) 
            "check reads)");
   add_degrees_flag(command, "Angles of --poses are in degrees, lengths in metres", arguments.poses)
       ->needs("--poses");
+  add_at_option(command, arguments.poses)->needs("--poses");
   command
       .add_option("--proofs", arguments.proofs,
                   "Which proofs about pairs of links spare tests where false alarms are counted: "
@@ -201,15 +204,28 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) 
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()}));
 }
 
+namespace {
+
+// Random postures are drawn between them.
+bool has_all_limits(const RobotModel& robot) {
+  return std::ranges::all_of(robot.variable_joints(), [&](int index) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
+    return joint.type == JointType::kContinuous || has_limits(joint);
+  });
+}
+
+}  // namespace
+
 FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDescription& robot)
     : robot_(robot), proofs_(proofs_named(arguments.proofs)), postures_(arguments.postures) {
   if (!arguments.goal.empty()) goal_ = share_of(arguments.goal);
   if (!arguments.poses.file.empty()) {
-    poses_ = read_configurations(arguments.poses, robot.model).trajectory;
+    poses_ = read_configurations(arguments.poses, robot).trajectory;
   }
   if (goal_ && robot.model.variable_count() == 0) {
     throw Error("--false-alarms", "the robot has no joint that moves");
   }
+  if (goal_) blame_file("--false-alarms", [&] { require_limits(robot.model); });
 }
 
 // Of a pair's proof: in proportion to the effort of covers, but for a first part; all of it from
@@ -286,7 +302,9 @@ MeasuredCover FalseAlarmRun::cover(const RobotCoverOptions& options, bool has_ma
   if (options.stop.stop_requested()) return result;
   AllowedCollisions allowed(model);
   allowed.allow(disabled);
-  result.random = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(), sample);
+  if (has_all_limits(robot_.model)) {
+    result.random = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(), sample);
+  }
   result.upper_bound = result.random.refused_share().upper_bound(LinkErrorChoice::kConfidence);
   if (poses_.size() > 0) {
     result.given = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(),

@@ -170,8 +170,15 @@ void rehearse_robot_files(const RobotFilePlan& plan, const RobotDescription& rob
   for (const std::string& name : plan.formats) {
     const std::optional<SphereFormat> format = sphere_format_named(name);
     if (!format) continue;  // trees and proofs can always be written
-    check_robot_spheres(spheres, *format, context_of(plan, robot, *format),
-                        plan.folder / sphere_file_name(robot.name, *format));
+    const fs::path file = plan.folder / sphere_file_name(robot.name, *format);
+    try {
+      check_robot_spheres(spheres, *format, context_of(plan, robot, *format), file);
+    } catch (const Error& error) {
+      if (error.subject() != file.string()) throw;
+      // What is wrong with names of a file that is not written yet is wrong with the URDF.
+      throw Error(plan.urdf.string(),
+                  error.reason() + ", which " + file.filename().string() + " cannot hold");
+    }
   }
 }
 

@@ -116,9 +116,17 @@ UrdfOptions urdf_options(const std::vector<std::string>& packages,
   return options;
 }
 
+RobotDescription read_urdf_with_warnings(const std::string& urdf,
+                                         const std::vector<std::string>& packages,
+                                         std::span<const LinkGeometry> needed) {
+  RobotDescription robot = read_urdf(urdf, urdf_options(packages, needed));
+  for (const std::string& warning : robot.warnings) warn(warning);
+  return robot;
+}
+
 RobotDescription read_robot(const std::string& urdf, const std::vector<std::string>& packages,
                             LinkGeometry geometry) {
-  RobotDescription robot = read_urdf(urdf, urdf_options(packages, {&geometry, 1}));
+  RobotDescription robot = read_urdf_with_warnings(urdf, packages, {&geometry, 1});
   const auto has_any = [&](LinkGeometry which) {
     return std::any_of(robot.links.begin(), robot.links.end(), [&](const LinkDescription& link) {
       return !link_shapes(link, which).empty();

@@ -33,6 +33,11 @@ void add_geometry_option(CLI::App& command, const std::string& description, std:
 UrdfOptions urdf_options(const std::vector<std::string>& packages,
                          std::span<const LinkGeometry> needed);
 
+// As read_urdf() with these options; prints the warnings.
+RobotDescription read_urdf_with_warnings(const std::string& urdf,
+                                         const std::vector<std::string>& packages,
+                                         std::span<const LinkGeometry> needed);
+
 // Reads a robot of which a command uses that geometry: meshes of the other one may be missing.
 // Throws Error as read_urdf(), and where no link has that geometry.
 RobotDescription read_robot(const std::string& urdf, const std::vector<std::string>& packages,

@@ -2,9 +2,12 @@
 #include "cli/robots/trajectory.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/files/files.h"
 #include "cli/text/print.h"
 #include "robot/check/robot_checker.h"
+#include "robot/check/robot_collision.h"
+#include "robot/files/robot_description.h"
 #include "robot/model/kinematics.h"
 
 #include <CLI/CLI.hpp>
@@ -62,6 +65,139 @@ std::string describe(const TurningMotions& turning, bool in_degrees) {
                 angle_text(turning.step, in_degrees));
 }
 
+std::string list(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    text += (i == 0 ? "" : ", ") + one_line(names[i]);
+  }
+  return text + (names.size() > kMost ? ", ..." : "");
+}
+
+const Joint& joint_of(const RobotModel& robot, std::size_t variable) {
+  return robot.joints()[static_cast<std::size_t>(robot.variable_joints()[variable])];
+}
+
+std::string names_of_variables(const RobotModel& robot) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < robot.variable_joints().size(); ++i) {
+    names.push_back(joint_of(robot, i).name);
+  }
+  return list(names);
+}
+
+// Where the joints stand that a trajectory leaves out.
+class OtherJoints {
+ public:
+  OtherJoints(const TrajectoryArguments& arguments, const RobotModel& robot,
+              const std::filesystem::path& srdf)
+      : arguments_(arguments),
+        robot_(robot),
+        configuration_(zero_posture(robot).configuration),
+        source_(configuration_.size(), Source::kZero) {
+    // States first: a position that is given for a joint is meant for it.
+    for (const std::string& text : arguments.at) {
+      if (text.find('=') == std::string::npos) take_state(text, srdf);
+    }
+    for (const std::string& text : arguments.at) {
+      if (text.find('=') != std::string::npos) take_position(text);
+    }
+  }
+
+  const std::vector<double>& configuration() const { return configuration_; }
+
+  // Refuses positions of joints that the file has, and warns of those that nobody gave.
+  void review(const Trajectory& trajectory) const {
+    std::vector<std::string> left;
+    for (std::size_t i = 0; i < source_.size(); ++i) {
+      const std::string& name = joint_of(robot_, i).name;
+      const bool is_other = std::find(trajectory.others.begin(), trajectory.others.end(), name) !=
+                            trajectory.others.end();
+      if (!is_other && source_[i] == Source::kPosition) {
+        throw Error("--at " + name, arguments_.file + " has positions of this joint");
+      }
+      if (is_other && source_[i] == Source::kZero) {
+        left.push_back(one_line(name) + " at " + position_text(i));
+      }
+    }
+    if (left.empty()) return;
+    warn(arguments_.file + ": it leaves out joints, which stay where they are nearest to zero: " +
+         list(left) + "; --at NAME=POSITION, or --at and a state of the SRDF, says where");
+  }
+
+ private:
+  enum class Source { kZero, kState, kPosition };
+
+  std::string position_text(std::size_t variable) const {
+    const double position = configuration_[variable];
+    if (!joint_of(robot_, variable).turns()) return concat(position, " m");
+    return angle_text(position, arguments_.is_in_degrees);
+  }
+
+  std::size_t variable_of(const std::string& name, const std::string& option) const {
+    const int index = robot_.find_joint(name);
+    if (index < 0) {
+      throw Error(option, "the robot has no such joint" +
+                              internal::did_you_mean(name, robot_.joints(), &Joint::name));
+    }
+    const Joint& joint = robot_.joints()[static_cast<std::size_t>(index)];
+    if (!joint.moves() || joint.mimics >= 0) {
+      throw Error(option, joint.moves() ? "the joint follows another" : "the joint is fixed");
+    }
+    return static_cast<std::size_t>(joint.variable);
+  }
+
+  void take_position(const std::string& text) {
+    const std::string option = "--at " + text;
+    const std::size_t at = text.find('=');
+    const std::size_t variable = variable_of(text.substr(0, at), option);
+    const auto number = internal::finite_number(text.substr(at + 1));
+    if (!number) throw Error(option, "the position is no finite number");
+    if (source_[variable] == Source::kPosition) throw Error(option, "the joint is given twice");
+    const bool is_angle = joint_of(robot_, variable).turns() && arguments_.is_in_degrees;
+    configuration_[variable] = is_angle ? *number * kRadiansPerDegree : *number;
+    source_[variable] = Source::kPosition;
+  }
+
+  void take_state(const std::string& name, const std::filesystem::path& srdf) {
+    const std::string option = "--at " + name;
+    if (srdf.empty()) {
+      throw Error(option, "is no NAME=POSITION, and no SRDF is given that could name this state");
+    }
+    std::vector<std::string> known;
+    const SemanticDescription semantics = read_srdf(srdf);
+    const GroupState* found = nullptr;
+    for (const GroupState& state : semantics.group_states) {
+      const std::string whole = state.group + "/" + state.name;
+      known.push_back(whole);
+      if (name != state.name && name != whole) continue;
+      if (found != nullptr) {
+        throw Error(option, "several groups have a state of this name: write GROUP/STATE, as " +
+                                found->group + "/" + found->name);
+      }
+      found = &state;
+    }
+    if (found == nullptr) {
+      throw Error(option, srdf.string() + " has no such state" +
+                              (known.empty() ? "" : "; it has " + list(known)));
+    }
+    for (const JointState& joint : found->joints) {
+      const int index = robot_.find_joint(joint.joint);
+      if (index < 0 || joint.position.size() != 1) continue;
+      const Joint& of_robot = robot_.joints()[static_cast<std::size_t>(index)];
+      if (!of_robot.moves() || of_robot.mimics >= 0) continue;
+      const auto variable = static_cast<std::size_t>(of_robot.variable);
+      configuration_[variable] = joint.position.front();
+      source_[variable] = Source::kState;
+    }
+  }
+
+  const TrajectoryArguments& arguments_;
+  const RobotModel& robot_;
+  std::vector<double> configuration_;
+  std::vector<Source> source_;  // of each number
+};
+
 }  // namespace
 
 CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
@@ -69,9 +205,29 @@ CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
   return command.add_flag("--degrees", arguments.is_in_degrees, help);
 }
 
-TrajectoryInput read_configurations(const TrajectoryArguments& arguments, const RobotModel& robot) {
+CLI::Option* add_at_option(CLI::App& command, TrajectoryArguments& arguments) {
+  return command
+      .add_option("--at", arguments.at,
+                  "Where a joint stands that the file leaves out: NAME=POSITION, or the name of a "
+                  "state of the SRDF; may be repeated (default: at zero or the nearest limit, with "
+                  "a warning)")
+      ->allow_extra_args(false)
+      ->type_name("NAME=POSITION");
+}
+
+TrajectoryInput read_configurations(const TrajectoryArguments& arguments,
+                                    const RobotDescription& description,
+                                    const std::filesystem::path& srdf) {
+  const RobotModel& robot = description.model;
   const AngleUnit unit = arguments.is_in_degrees ? AngleUnit::kDegrees : AngleUnit::kRadians;
-  const Trajectory whole = read_trajectory(arguments.file, robot, unit);
+  const OtherJoints others(arguments, robot, srdf);
+  const Trajectory whole = read_trajectory(arguments.file, robot, unit, others.configuration());
+  others.review(whole);
+  if (!whole.has_header && !description.other_joint_order.empty()) {
+    warn(arguments.file + ": no line names the joints: the numbers of a line are taken for " +
+         names_of_variables(robot) + ", depth first, while the URDF has " +
+         list(description.other_joint_order) + "; a first line of names would settle it");
+  }
   const DegreesGuess guess = arguments.is_in_degrees ? DegreesGuess() : guess_degrees(robot, whole);
   if (guess.looks_so) {
     warn(concat(arguments.file, ": its angles look like degrees: as radians ", guess.beyond, " of ",

@@ -21,13 +21,17 @@ namespace spherule {
 struct TrajectoryArguments {
   std::string file;
   bool is_in_degrees = false;
-  bool has_motions = false;  // its shards are of motions, where it has any
+  std::vector<std::string> at{};  // NAME=POSITION and states, of joints that the file leaves out
+  bool has_motions = false;       // its shards are of motions, where it has any
   Shard shard{};
 };
 
 // Adds --degrees, with what its help says.
 CLI::Option* add_degrees_flag(CLI::App& command, const std::string& help,
                               TrajectoryArguments& arguments);
+
+// Adds --at, which may be repeated.
+CLI::Option* add_at_option(CLI::App& command, TrajectoryArguments& arguments);
 
 // What is read of this shard, and what of it is outside the limits of the joints. A shard of
 // motions has a configuration more, the end of its last motion, unless that is the end of the
@@ -41,9 +45,13 @@ struct TrajectoryInput {
   OutsideLimits outside;
 };
 
-// As read_trajectory(). Warns of angles that look like degrees, and of configurations outside the
-// limits of the joints, once each.
-TrajectoryInput read_configurations(const TrajectoryArguments& arguments, const RobotModel& robot);
+// As read_trajectory(). Joints that the file leaves out stand where --at puts them: at a position,
+// or as in a state of the SRDF that is given; the others as in zero_posture(), with a warning.
+// Warns of angles that look like degrees, of configurations outside the limits of the joints, and
+// of numbers without names where the URDF has the joints in another order, once each.
+TrajectoryInput read_configurations(const TrajectoryArguments& arguments,
+                                    const RobotDescription& robot,
+                                    const std::filesystem::path& srdf = {});
 
 // Throws Error, naming the line and the joint, for a configuration with a position beyond
 // RobotChecker::kLargestPosition, of joints that mimic others, too: nothing is proved there.

@@ -344,6 +344,16 @@ void allow_disabled(AllowedOfRobot& self, const py::object& pairs) {
   self.allowed.allow(pairs_of(pairs));
 }
 
+void apply_srdf(AllowedOfRobot& self, const py::object& semantics) {
+  SemanticDescription given;
+  given.disabled_pairs = pairs_of(semantics.attr("disabled_pairs"));
+  given.links_disabled_by_default =
+      semantics.attr("links_disabled_by_default").cast<std::vector<std::string>>();
+  given.enabled_pairs =
+      semantics.attr("enabled_pairs").cast<std::vector<std::pair<std::string, std::string>>>();
+  self.allowed.apply(given);
+}
+
 py::object allow_by_samples(AllowedOfRobot& self, std::size_t configurations, std::uint64_t seed) {
   // Other threads may edit them while this one does not hold the lock.
   SampledCollisions found = [&, allowed = self.allowed] {
@@ -372,6 +382,12 @@ void bind_allowed(py::module_& module) {
       .def("allow_pairs", &allow_disabled, py::arg("pairs"),
            Help("allow_pairs(self, pairs)",
                 "The pairs that an SRDF disables: DisabledPair, or what has `link_a` and `link_b`.")
+               .c_str())
+      .def("apply", &apply_srdf, py::arg("semantics"),
+           Help("apply(self, semantics)",
+                "As a SemanticDescription says: pairs that it disables, by the default of a link, "
+                "too, are allowed, and those that it enables are tested. Those of other robots' "
+                "links are passed over.")
                .c_str())
       .def(
           "allow_all", [](AllowedOfRobot& self) { self.allowed.allow_all(); },

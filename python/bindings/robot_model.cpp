@@ -329,15 +329,24 @@ py::object semantics_object(const SemanticDescription& semantics) {
     effectors.append(
         make_result("EndEffector", tool.name, tool.group, tool.parent_link, tool.parent_group));
   }
+  py::list enabled;
+  for (const auto& [first, second] : semantics.enabled_pairs) {
+    enabled.append(py::make_tuple(first, second));
+  }
   return make_result("SemanticDescription", semantics.robot_name, py::tuple(groups),
                      py::tuple(states), py::tuple(effectors),
                      pairs_object(semantics.disabled_pairs),
-                     spheres_object(semantics.sphere_approximations));
+                     spheres_object(semantics.sphere_approximations),
+                     py::tuple(py::cast(semantics.links_disabled_by_default)), py::tuple(enabled),
+                     py::tuple(py::cast(semantics.warnings)));
 }
 
-py::array trajectory(const py::object& path, const py::object& robot, const py::object& angles) {
+py::array trajectory(const py::object& path, const py::object& robot, const py::object& angles,
+                     const py::object& otherwise) {
   const auto unit = static_cast<AngleUnit>(choice(angles, {"radians", "degrees"}, "angles"));
-  Trajectory read = read_trajectory(path_of(path, "path"), model_of(robot), unit);
+  const auto others =
+      otherwise.is_none() ? std::vector<double>() : otherwise.cast<std::vector<double>>();
+  Trajectory read = read_trajectory(path_of(path, "path"), model_of(robot), unit, others);
   const auto width = static_cast<py::ssize_t>(read.width);
   return array_of(std::move(read.positions)).reshape({py::ssize_t{-1}, width});
 }
@@ -358,6 +367,10 @@ void bind_description(py::module_& module) {
           [](const RobotDescription& robot) { return std::make_shared<RobotModel>(robot.model); },
           "A copy of the mechanism.")
       .def_property_readonly("links", &described_links)
+      .def_property_readonly(
+          "warnings",
+          [](const RobotDescription& robot) { return py::tuple(py::cast(robot.warnings)); },
+          "What is odd in the file, with its line.")
       .def("__repr__",
            [](const RobotDescription& robot) {
              return "<spherule.RobotDescription: " + robot.name + ", " +
@@ -419,10 +432,12 @@ void bind_robot_files(py::module_& module) {
       [](const py::object& path) { return semantics_object(read_srdf(path_of(path, "path"))); },
       py::arg("path"), Help("read_srdf(path)", "Reads an SRDF: a SemanticDescription.").c_str());
   module.def("read_trajectory", &trajectory, py::arg("path"), py::arg("robot"), py::kw_only(),
-             py::arg("angles") = "radians",
-             Help("read_trajectory(path, robot, *, angles='radians')",
+             py::arg("angles") = "radians", py::arg("otherwise") = py::none(),
+             Help("read_trajectory(path, robot, *, angles='radians', otherwise=None)",
                   "Reads configurations from a text file: shape (n, dof), radians and metres. "
-                  "`angles` says in what the file has angles, 'radians' or 'degrees'.")
+                  "`angles` says in what the file has angles, 'radians' or 'degrees'. Joints that "
+                  "it does not name stand as in the configuration `otherwise`; without it all have "
+                  "to be named.")
                  .c_str());
 }
 

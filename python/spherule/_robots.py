@@ -150,7 +150,11 @@ class SemanticDescription(Record):
     group_states: Tuple[GroupState, ...] = ()
     end_effectors: Tuple[EndEffector, ...] = ()
     disabled_pairs: Tuple[DisabledPair, ...] = ()
+    """Those that are listed; AllowedCollisions.apply() knows the others, too."""
     sphere_approximations: Dict[str, Floats] = field(default_factory=dict)
+    links_disabled_by_default: Tuple[str, ...] = ()
+    enabled_pairs: Tuple[Tuple[str, str], ...] = ()
+    warnings: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, repr=False, eq=False)

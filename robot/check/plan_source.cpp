@@ -68,7 +68,9 @@ class CellsSource {
   std::shared_ptr<const FreeCells> of(const CheckedPair& pair) {
     if (pair.boxes == nullptr) {
       if (++searched_ > kMostSearched) return nullptr;
-      return robot_.check_cache().free_cells.of(source_of(pair.piece, pair.other));
+      const FreeCellsSource source = source_of(pair.piece, pair.other);
+      if (!has_ranges(source.first) || !has_ranges(source.second)) return nullptr;
+      return robot_.check_cache().free_cells.of(source);
     }
     std::vector<int> positions;
     for (const FreeBoxes::Variable& variable : pair.boxes->variables()) {
@@ -87,6 +89,12 @@ class CellsSource {
       b.chain.erase(b.chain.begin());
     }
     return result;
+  }
+
+  // Cells part the ranges of the joints, which those without limits have not.
+  static bool has_ranges(const FreeCellsSource::Side& side) {
+    return std::all_of(side.chain.begin(), side.chain.end(),
+                       [](const auto& joint) { return std::isfinite(joint.upper); });
   }
 
   FreeCellsSource::Side side(int body) const {

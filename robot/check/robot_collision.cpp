@@ -5,10 +5,12 @@
 #include "robot/check/body_pairs.h"
 #include "robot/check/robot_scene.h"
 #include "robot/cover/alarm_sample.h"
+#include "robot/model/joint_positions.h"
 #include "robot/model/kinematics.h"
 #include "robot/pairs/link_pieces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <random>
@@ -48,6 +50,7 @@ std::string_view kind_of(const PairStatus& status) {
 SampledCollisions sample_collisions(const RobotModel& robot, const AllowedCollisions& allowed,
                                     const SampleCollisionsOptions& options) {
   if (options.configurations == 0) throw Error("sample", "it has no configurations");
+  require_limits(robot);
   std::vector<internal::CheckedPiece> pieces;
   std::vector<std::vector<int>> pieces_of(robot.links().size());
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
@@ -130,6 +133,7 @@ NamedPosture zero_posture(const RobotModel& robot) {
 
 NamedPosture rest_posture(const RobotModel& robot) {
   return posture("the rest posture", robot, [](const Joint& joint) {
+    if (!std::isfinite(joint.upper)) return 0.0;
     const double margin = kMargin * (joint.upper - joint.lower);
     const bool is_within = joint.lower + margin < 0.0 && 0.0 < joint.upper - margin;
     return is_within ? 0.0 : 0.5 * (joint.lower + joint.upper);

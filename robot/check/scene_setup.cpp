@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -86,19 +87,8 @@ struct FileOf {
   }
 };
 
-// What stands for a file that is there, where files are not read. Throws Error as reading does that
-// cannot begin.
+// Of what stands for a file where nothing is made of it.
 constexpr double kStandInRadius = 1.0;
-
-struct StandIn {
-  template <class Source>
-  ObstacleShape operator()(const Source& source) const {
-    require_regular_file(source.path);
-    if (!std::filesystem::exists(source.path)) read_file(source.path);
-    return SolidSphere{kStandInRadius};
-  }
-  ObstacleShape operator()(const Primitive& primitive) const { return primitive; }
-};
 
 struct CoveredFile {
   SharedTree tree;
@@ -140,16 +130,17 @@ class Preparation {
     return {std::move(scene_), std::move(warnings_)};
   }
 
-  // The same but for what files hold, which are not read.
+  // The same with stand-ins for what files hold: they are read, but nothing is made of them.
   void rehearse() && {
     allow_disabled_pairs();
     for (const SceneObstacle& obstacle : description_.obstacles) {
-      scene_.add(obstacle.name, std::visit(StandIn(), obstacle.shape), obstacle.world_from_shape);
+      const auto stand_in = [&](const auto& source) { return stand_in_of(obstacle.name, source); };
+      scene_.add(obstacle.name, std::visit(stand_in, obstacle.shape), obstacle.world_from_shape);
     }
     const std::array<Sphere, 1> sphere = {Sphere{Eigen::Vector3d::Zero(), kStandInRadius}};
     const SharedTree tree = shared(build_tree(sphere));
     for (const SceneAttachment& object : description_.attached) {
-      std::visit(StandIn(), object.shape);
+      std::visit([&](const auto& source) { stand_in_of(object.name, source); }, object.shape);
       scene_.attach(object.name, object.link, tree, object.link_from_object);
     }
     // Of regions the spheres are not known.
@@ -175,12 +166,9 @@ class Preparation {
     if (!description_.srdf) return;
     require_regular_file(*description_.srdf);
     AllowedCollisions allowed = scene_.allowed_collisions();
-    for (const DisabledPair& pair : read_srdf(*description_.srdf).disabled_pairs) {
-      const RobotModel& robot = scene_.robot();
-      const int first = robot.find_link(pair.link_a);
-      const int second = robot.find_link(pair.link_b);
-      if (first >= 0 && second >= 0) allowed.allow(first, second, AllowedReason::kGiven);
-    }
+    const SemanticDescription semantics = read_srdf(*description_.srdf);
+    warnings_.insert(warnings_.end(), semantics.warnings.begin(), semantics.warnings.end());
+    allowed.apply(semantics);
     scene_.set_allowed_collisions(std::move(allowed));
   }
 
@@ -215,6 +203,26 @@ class Preparation {
     return tree_of(source);
   }
   ObstacleShape shape_of(const std::string&, const TreeSource& source) { return tree_of(source); }
+
+  ObstacleShape stand_in_of(const std::string&, const Primitive& primitive) { return primitive; }
+  template <class Source>
+  ObstacleShape stand_in_of(const std::string& name, const Source& source) {
+    if (read_.insert(source.path.lexically_normal()).second) read_once(name, source);
+    return SolidSphere{kStandInRadius};
+  }
+
+  static void read_once(const std::string& name, const MeshFile& file) {
+    require_regular_file(file.path);
+    link_mesh(link_of(name, file));
+  }
+  static void read_once(const std::string&, const PointsSource& source) {
+    require_regular_file(source.path);
+    read_point_cloud(source.path, source.scale);
+  }
+  template <class Source>
+  void read_once(const std::string&, const Source& source) {
+    tree_of(source);
+  }
 
   SharedTree tree_of(const SpheresSource& source) {
     return spheres_.get(key_of(source.path), [&] {
@@ -266,7 +274,7 @@ class Preparation {
   MadeOnce<std::shared_ptr<const SolidMesh>> solids_;
   MadeOnce<SharedTree> clouds_, spheres_, trees_;
   MadeOnce<CoveredFile> covered_;
-  std::set<std::filesystem::path> files_;
+  std::set<std::filesystem::path> files_, read_;
   std::size_t repeated_nodes_ = 0;  // of shapes from these files, beyond the first of each
 };
 

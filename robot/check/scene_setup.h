@@ -56,9 +56,9 @@ struct PreparedScene {
 PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,
                             const RobotCoverOptions& cover = {});
 
-// Throws the Error that prepare_scene() would throw for a file that is not there, or for a name
-// that is unknown or taken. To be called before long work: but for the SRDF no file is read.
-// `robot` needs no spheres.
+// Throws the Error that prepare_scene() would throw for a name that is unknown or taken and for a
+// file that cannot be read or is malformed; of meshes, that no solid comes of them is not found. To
+// be called before long work: reads all files. `robot` needs no spheres.
 void check_scene_names(RobotModel robot, const SceneDescription& scene);
 
 }  // namespace spherule

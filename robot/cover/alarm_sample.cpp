@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/threads.h"
 #include "collide/collide.h"
+#include "robot/model/joint_positions.h"
 #include "robot/model/kinematics.h"
 #include "robot/pairs/link_pieces.h"
 #include "robot/pairs/proof_scope.h"
@@ -229,6 +230,7 @@ void draw_configuration(const RobotModel& robot, std::mt19937_64& bits,
 }
 
 std::vector<double> draw_postures(const RobotModel& robot, std::size_t count, std::uint64_t seed) {
+  require_limits(robot);
   const auto width = static_cast<std::size_t>(robot.variable_count());
   std::vector<double> result(count * width);
   std::mt19937_64 bits(seed);

@@ -337,6 +337,16 @@ std::vector<std::string> links_interrupted(const RobotCover& cover) {
   return names;
 }
 
+namespace {
+
+bool is_below_joint_of_its_name(const RobotModel& robot, const std::string& link) {
+  const int index = robot.find_link(link);
+  const int joint = index < 0 ? -1 : robot.links()[static_cast<std::size_t>(index)].parent_joint;
+  return joint >= 0 && robot.joints()[static_cast<std::size_t>(joint)].name == link;
+}
+
+}  // namespace
+
 RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cover) {
   RobotSpheres result;
   result.robot = cover.robot;
@@ -359,6 +369,11 @@ RobotSpheres robot_spheres(const RobotDescription& robot, const RobotCover& cove
                                               std::string(reason)});
     }
   }
+  // Other files know nothing of the links within planar and floating joints.
+  std::erase_if(result.links, [&](const LinkSpheres& link) {
+    return link.spheres.empty() && link.link.find('/') != std::string::npos &&
+           is_below_joint_of_its_name(robot.model, link.link);
+  });
   return result;
 }
 

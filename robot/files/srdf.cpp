@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/rounding.h"
 #include "robot/files/robot_description.h"
+#include "robot/files/urdf_files.h"
 #include "robot/files/xml_file.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace spherule {
@@ -19,6 +22,30 @@ std::vector<std::string> names_of(const XmlElement& group, std::string_view tag)
   for (const XmlElement& child : group.children(tag)) names.push_back(child.needed("name"));
   return names;
 }
+
+// Warns once of each kind of element that is not known there.
+class UnknownElements {
+ public:
+  void in(const XmlElement& element, std::initializer_list<std::string_view> known) {
+    for (const XmlElement& child : element.children()) {
+      const std::string tag(child.tag());
+      if (std::find(known.begin(), known.end(), tag) != known.end()) continue;
+      if (tag.starts_with("xacro:")) {
+        child.refuse(
+            "this is for xacro, which makes an SRDF of it: rename the file, so that it "
+            "ends in .xacro");
+      }
+      if (!warned_.emplace(element.tag(), tag).second) continue;
+      warnings_.push_back(child.place() + "it is not known there and is ignored");
+    }
+  }
+
+  std::vector<std::string> warnings() && { return std::move(warnings_); }
+
+ private:
+  std::set<std::pair<std::string, std::string>> warned_;
+  std::vector<std::string> warnings_;
+};
 
 // Refuses what was there before.
 template <class Key>
@@ -100,13 +127,18 @@ LinkSpheres spheres_of(const XmlElement& element) {
 }  // namespace
 
 SemanticDescription read_srdf(const std::filesystem::path& path) {
-  const internal::XmlFile file(path, "robot");
+  const internal::XmlFile file(path.string(), internal::urdf_text(path), "robot");
   const XmlElement root = file.root();
   SemanticDescription result{.robot_name = root.needed("name")};
+  UnknownElements unknown;
+  unknown.in(root, {"group", "group_state", "end_effector", "virtual_joint", "passive_joint",
+                    "joint_property", "disable_default_collisions", "enable_collisions",
+                    "disable_collisions", "link_sphere_approximation"});
 
   const std::vector<XmlElement> groups = root.children("group");
   std::set<std::string> group_names;
   for (const XmlElement& element : groups) {
+    unknown.in(element, {"link", "joint", "chain", "group"});
     result.groups.push_back(group_of(element));
     remember(group_names, result.groups.back().name, element);
   }
@@ -117,6 +149,7 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
 
   std::set<std::pair<std::string, std::string>> state_names;
   for (const XmlElement& element : root.children("group_state")) {
+    unknown.in(element, {"joint"});
     const GroupState& state = result.group_states.emplace_back(state_of(element));
     require_group(state.group, element);
     remember(state_names, {state.group, state.name}, element);
@@ -133,12 +166,66 @@ SemanticDescription read_srdf(const std::filesystem::path& path) {
   for (const XmlElement& element : root.children("disable_collisions")) {
     result.disabled_pairs.push_back(pair_of(element));
   }
+  for (const XmlElement& element : root.children("disable_default_collisions")) {
+    result.links_disabled_by_default.push_back(element.needed("link"));
+  }
+  for (const XmlElement& element : root.children("enable_collisions")) {
+    const DisabledPair pair = pair_of(element);
+    result.enabled_pairs.emplace_back(pair.link_a, pair.link_b);
+  }
   std::set<std::string> approximated;
   for (const XmlElement& element : root.children("link_sphere_approximation")) {
+    unknown.in(element, {"sphere"});
     result.sphere_approximations.push_back(spheres_of(element));
     remember(approximated, result.sphere_approximations.back().link, element);
   }
+  result.warnings = std::move(unknown).warnings();
   return result;
+}
+
+namespace {
+
+using Names = std::pair<std::string, std::string>;
+
+Names in_order(const std::string& a, const std::string& b) {
+  return std::minmax(a, b);
+}
+
+}  // namespace
+
+std::vector<DisabledPair> disabled_among(const SemanticDescription& semantics,
+                                         std::span<const std::string> links) {
+  std::vector<DisabledPair> pairs = semantics.disabled_pairs;
+  std::set<Names> decided;
+  for (const DisabledPair& pair : pairs) decided.insert(in_order(pair.link_a, pair.link_b));
+  for (const auto& [first, second] : semantics.enabled_pairs) {
+    decided.insert(in_order(first, second));
+  }
+  const std::set<std::string> by_default(semantics.links_disabled_by_default.begin(),
+                                         semantics.links_disabled_by_default.end());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (!by_default.contains(links[i])) continue;
+    for (std::size_t j = 0; j < links.size(); ++j) {
+      // Of two such links the pair is the first one's.
+      if (i == j || (j < i && by_default.contains(links[j]))) continue;
+      if (decided.contains(in_order(links[i], links[j]))) continue;
+      pairs.push_back({links[i], links[j], std::string(kDisabledByDefault)});
+    }
+  }
+  return pairs;
+}
+
+std::vector<std::pair<std::string, std::string>> enabled_only(
+    const SemanticDescription& semantics) {
+  std::set<Names> disabled;
+  for (const DisabledPair& pair : semantics.disabled_pairs) {
+    disabled.insert(in_order(pair.link_a, pair.link_b));
+  }
+  std::vector<Names> pairs = semantics.enabled_pairs;
+  std::erase_if(pairs, [&](const Names& pair) {
+    return disabled.contains(in_order(pair.first, pair.second));
+  });
+  return pairs;
 }
 
 std::vector<std::string> unknown_names(const SemanticDescription& semantics,
@@ -172,6 +259,13 @@ std::vector<std::string> unknown_names(const SemanticDescription& semantics,
   for (const DisabledPair& pair : semantics.disabled_pairs) {
     check_link("disabled pair", pair.link_a);
     check_link("disabled pair", pair.link_b);
+  }
+  for (const std::string& link : semantics.links_disabled_by_default) {
+    check_link("disabled by default", link);
+  }
+  for (const auto& [first, second] : semantics.enabled_pairs) {
+    check_link("enabled pair", first);
+    check_link("enabled pair", second);
   }
   for (const LinkSpheres& spheres : semantics.sphere_approximations) {
     check_link("sphere approximation", spheres.link);

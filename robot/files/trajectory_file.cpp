@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -25,8 +26,9 @@ constexpr int kPassedOver = -1;
 
 class Reader {
  public:
-  Reader(std::string file, const RobotModel& robot, AngleUnit angles)
-      : file_(std::move(file)), robot_(robot) {
+  Reader(std::string file, const RobotModel& robot, AngleUnit angles,
+         std::span<const double> otherwise)
+      : file_(std::move(file)), robot_(robot), otherwise_(otherwise) {
     for (const int joint : robot.variable_joints()) {
       const bool turns = robot.joints()[static_cast<std::size_t>(joint)].turns();
       is_in_degrees_.push_back(turns && angles == AngleUnit::kDegrees ? 1 : 0);
@@ -40,7 +42,7 @@ class Reader {
     while (lines.next()) {
       line_ = lines.number();
       if (first && is_header(lines.words())) {
-        has_header_ = true;
+        trajectory_.has_header = true;
         take_header(lines.words());
       } else {
         if (first) number_columns();
@@ -104,10 +106,13 @@ class Reader {
       if (there != 0) refuse("joint " + internal::in_quotes(word) + " is there twice");
       there = 1;
     }
-    const auto missing = std::find(seen.begin(), seen.end(), 0);
-    if (missing == seen.end()) return;
-    const auto variable = static_cast<std::size_t>(missing - seen.begin());
-    refuse("joint " + internal::in_quotes(name_of_variable(variable)) + " is missing");
+    for (std::size_t variable = 0; variable < seen.size(); ++variable) {
+      if (seen[variable] != 0) continue;
+      const std::string name = name_of_variable(variable);
+      if (otherwise_.empty()) refuse("joint " + internal::in_quotes(name) + " is missing");
+      trajectory_.others.push_back(name);
+    }
+    if (trajectory_.others.size() == seen.size()) refuse("it names no joint of the robot");
   }
 
   void number_columns() {
@@ -117,10 +122,15 @@ class Reader {
   void take_configuration(const std::vector<std::string_view>& words) {
     if (words.size() != columns_.size()) {
       refuse("has " + std::to_string(words.size()) + " numbers instead of " +
-             std::to_string(columns_.size()) + (has_header_ ? "" : ": " + all_names()));
+             std::to_string(columns_.size()) +
+             (trajectory_.has_header
+                  ? ""
+                  : ": " + all_names() + "; a first line of names says which joints they are"));
     }
     const std::size_t at = trajectory_.positions.size();
     trajectory_.positions.resize(at + trajectory_.width);
+    std::copy(otherwise_.begin(), otherwise_.end(),
+              trajectory_.positions.begin() + static_cast<std::ptrdiff_t>(at));
     for (std::size_t i = 0; i < words.size(); ++i) {
       const std::optional<double> number = internal::finite_number(words[i]);
       if (!number) refuse(internal::in_quotes(words[i]) + " is not a finite number");
@@ -134,19 +144,23 @@ class Reader {
 
   const std::string file_;
   const RobotModel& robot_;
+  const std::span<const double> otherwise_;
   std::vector<char> is_in_degrees_{};  // for each variable
   std::vector<int> columns_;           // the variable in each, or kPassedOver
   std::size_t line_ = 0;
-  bool has_header_ = false;
   Trajectory trajectory_;
 };
 
 }  // namespace
 
 Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot,
-                           AngleUnit angles) {
+                           AngleUnit angles, std::span<const double> otherwise) {
   if (robot.variable_count() == 0) throw Error(path.string(), "the robot has no joint that moves");
-  return Reader(path.string(), robot, angles).read(read_file(path));
+  if (!otherwise.empty() && otherwise.size() != static_cast<std::size_t>(robot.variable_count())) {
+    throw Error("configuration",
+                "it is not of this robot: it has " + std::to_string(otherwise.size()) + " numbers");
+  }
+  return Reader(path.string(), robot, angles, otherwise).read(read_file(path));
 }
 
 namespace {

@@ -30,9 +30,11 @@ namespace spherule {
 
 // Configurations of a robot, in the order of a file.
 struct Trajectory {
-  std::size_t width = 0;             // numbers of a configuration: the robot's variable_count()
-  std::vector<double> positions{};   // one configuration behind the other
-  std::vector<std::size_t> lines{};  // of the file, for each configuration; the first line is 1
+  std::size_t width = 0;              // numbers of a configuration: the robot's variable_count()
+  std::vector<double> positions{};    // one configuration behind the other
+  std::vector<std::size_t> lines{};   // of the file, for each configuration; the first line is 1
+  bool has_header = false;            // a line of the file names the joints
+  std::vector<std::string> others{};  // joints that it does not name
 
   // How many configurations there are, and one of them.
   std::size_t size() const { return lines.size(); }
@@ -51,6 +53,9 @@ inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 // other once; a column named "time" is passed over. Without it the numbers are those of a
 // configuration, in their order. Empty lines and what follows a # are passed over.
 //
+// Joints that the line of names leaves out stand as in the configuration `otherwise`, radians and
+// metres; where that is empty, all have to be named.
+//
 // Degrees are those of joints that turn, revolute and continuous ones; lengths stay metres. They
 // become radians as rounded to doubles, each within 4e-16 of itself of the exact ones: what is read
 // are these.
@@ -60,7 +65,8 @@ inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 // too many numbers, what is no finite number, a line with commas beside semicolons or beside blanks
 // that separate (they may be those of decimals), and a file without configurations.
 Trajectory read_trajectory(const std::filesystem::path& path, const RobotModel& robot,
-                           AngleUnit angles = AngleUnit::kRadians);
+                           AngleUnit angles = AngleUnit::kRadians,
+                           std::span<const double> otherwise = {});
 
 // What a person should know of a trajectory that is well formed: what it leaves open, or what may
 // be meant otherwise.

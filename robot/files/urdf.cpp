@@ -10,8 +10,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -141,11 +144,43 @@ void refuse_xacro(const XmlElement& element) {
   for (const XmlElement& child : element.children()) refuse_xacro(child);
 }
 
+// Of URDF, 1.MINOR.
+constexpr int kNewestMinor = 2;
+
+int minor_version_of(const XmlElement& robot) {
+  const std::string version = robot.attribute("version").value_or("1.0");
+  for (int minor = 0; minor <= kNewestMinor; ++minor) {
+    if (version == "1." + std::to_string(minor)) return minor;
+  }
+  robot.refuse("its version is " + internal::in_quotes(version) + ": versions 1.0 to 1." +
+               std::to_string(kNewestMinor) + " of URDF can be read");
+}
+
+Pose pose_of_quaternion(const XmlElement& origin) {
+  const auto xyzw = origin.numbers("quat_xyzw", 4);
+  const Eigen::Quaterniond q((*xyzw)[3], (*xyzw)[0], (*xyzw)[1], (*xyzw)[2]);
+  const double largest = q.coeffs().cwiseAbs().maxCoeff();
+  if (!(largest > 0.0)) origin.refuse("quat_xyzw is zero, which is no rotation");
+  const Eigen::Vector4d scaled = q.coeffs() / largest;
+  const Eigen::Vector3d xyz = origin.vector("xyz", Eigen::Vector3d::Zero());
+  return at(origin, [&] { return Pose(Eigen::Quaterniond(scaled / scaled.norm()), xyz); });
+}
+
 // Roll, pitch and yaw turn about the fixed axes x, y and z in this order. The products and the norm
 // are summed in the order of urdfdom, so that the pose is the same to the last bit.
-Pose pose_of(const XmlElement& around) {
+Pose pose_of(const XmlElement& around, int minor_version) {
   const auto origin = around.child("origin");
   if (!origin) return {};
+  if (origin->attribute("quat_xyzw")) {
+    if (minor_version < 1) {
+      origin->refuse(
+          "quat_xyzw is of URDF 1.1, and this file is of 1.0, where other tools pass "
+          "over it: write version=\"1.1\" in <robot>, or rpy");
+    }
+    if (origin->attribute("rpy")) origin->refuse("it has both rpy and quat_xyzw");
+    origin->require_attributes({"xyz", "quat_xyzw"});
+    return pose_of_quaternion(*origin);
+  }
   origin->require_attributes({"xyz", "rpy"});
   const Eigen::Vector3d half = 0.5 * origin->vector("rpy", Eigen::Vector3d::Zero());
   const auto turn = [](double half_angle, const Eigen::Vector3d& axis) {
@@ -160,16 +195,23 @@ Pose pose_of(const XmlElement& around) {
   return at(*origin, [&] { return Pose(Eigen::Quaterniond(q.coeffs() / norm), xyz); });
 }
 
+// What becomes of the joint in the model: several joints of planar and floating ones.
+enum class JointKind { kOne, kPlanar, kFloating };
+
+JointKind kind_of(const XmlElement& joint) {
+  const std::string type = joint.needed("type");
+  return type == "planar"     ? JointKind::kPlanar
+         : type == "floating" ? JointKind::kFloating
+                              : JointKind::kOne;
+}
+
+// Of one joint.
 JointType type_of(const XmlElement& joint) {
   const std::string type = joint.needed("type");
   if (type == "fixed") return JointType::kFixed;
   if (type == "revolute") return JointType::kRevolute;
   if (type == "prismatic") return JointType::kPrismatic;
   if (type == "continuous") return JointType::kContinuous;
-  if (type == "planar" || type == "floating") {
-    joint.refuse("planar and floating joints cannot be modelled; the type 'fixed' in place of '" +
-                 type + "' holds what hangs on it where its <origin> is");
-  }
   joint.refuse("it has no known type but " + internal::in_quotes(type));
 }
 
@@ -185,18 +227,74 @@ Eigen::Vector3d axis_of(const XmlElement& joint) {
   return axis->needed_vector("xyz");
 }
 
-Joint joint_of(const XmlElement& element) {
-  Joint joint{.name = element.needed("name"),
-              .type = type_of(element),
-              .parent_from_joint = pose_of(element)};
-  if (joint.type != JointType::kFixed) joint.axis = axis_of(element);
+// Lengths of planar and floating joints, metres: beyond, nothing is proved of motions.
+constexpr double kFarthest = 100.0;
+
+// Why limits cannot be used; empty if they can, and then the joint has them.
+std::string take_limits(const XmlElement& element, Joint& joint) {
   const auto limit = element.child("limit");
-  if (joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic) {
-    if (!limit) element.refuse("it has no <limit>");
-    joint.lower = limit->number("lower", 0.0);
-    joint.upper = limit->number("upper", 0.0);
+  if (!limit) return "it has no <limit>";
+  for (const char* const name : {"lower", "upper"}) {
+    const std::string text = limit->attribute(name).value_or("0");
+    const std::vector<std::string_view> words = internal::words_of(text);
+    const auto number = words.size() == 1 ? internal::finite_number(words[0]) : std::nullopt;
+    if (!number) {
+      return "the " + std::string(name) + " limit " + internal::in_quotes(text) +
+             " is no finite number";
+    }
+    (name[0] == 'l' ? joint.lower : joint.upper) = *number;
   }
-  return joint;
+  if (joint.lower <= joint.upper) return {};
+  return "its limits are reversed: " + internal::number_text(joint.lower) + " and " +
+         internal::number_text(joint.upper);
+}
+
+// What a URDF joint is in the model, from the parent link to the child link: one joint, or several
+// with links between them that are called as the joint above them.
+std::vector<Joint> joints_of(const XmlElement& element, int minor_version,
+                             std::vector<std::string>& warnings) {
+  const std::string name = element.needed("name");
+  const Pose origin = pose_of(element, minor_version);
+  const auto part = [&](const char* end, JointType type, const Eigen::Vector3d& axis) {
+    Joint joint{.name = name + "/" + end, .type = type, .axis = axis};
+    if (type == JointType::kPrismatic) joint.lower = -kFarthest;
+    if (type == JointType::kPrismatic) joint.upper = kFarthest;
+    return joint;
+  };
+  constexpr JointType kSlides = JointType::kPrismatic;
+  constexpr JointType kTurns = JointType::kContinuous;
+  std::vector<Joint> joints;
+  if (kind_of(element) == JointKind::kPlanar) {
+    const Eigen::Vector3d axis =
+        element.child("axis") ? axis_of(element) : Eigen::Vector3d::UnitZ();
+    const double length = axis.norm();
+    if (!(length > 0.0)) element.refuse("the axis is zero");
+    const Eigen::Matrix3d plane =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+    joints = {part("x", kSlides, plane.col(0)), part("y", kSlides, plane.col(1)),
+              part("theta", kTurns, axis)};
+  } else if (kind_of(element) == JointKind::kFloating) {
+    joints = {part("x", kSlides, Eigen::Vector3d::UnitX()),
+              part("y", kSlides, Eigen::Vector3d::UnitY()),
+              part("z", kSlides, Eigen::Vector3d::UnitZ()),
+              part("yaw", kTurns, Eigen::Vector3d::UnitZ()),
+              part("pitch", kTurns, Eigen::Vector3d::UnitY()),
+              part("roll", kTurns, Eigen::Vector3d::UnitX())};
+  } else {
+    Joint joint{.name = name, .type = type_of(element)};
+    if (joint.type != JointType::kFixed) joint.axis = axis_of(element);
+    if (joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic) {
+      const std::string fault = take_limits(element, joint);
+      if (!fault.empty()) {
+        joint.lower = -std::numeric_limits<double>::infinity();
+        joint.upper = std::numeric_limits<double>::infinity();
+        warnings.push_back(element.place() + fault + ": it is read as a joint without limits");
+      }
+    }
+    joints = {joint};
+  }
+  joints.front().parent_from_joint = origin;
+  return joints;
 }
 
 // Spheres of radius zero stand for points of contact, boxes of size zero for links that have no
@@ -301,12 +399,43 @@ class MeshPaths {
         if (package_name(at / package) == package) return at / package;
         if (at == at.parent_path()) break;
       }
+      const std::optional<fs::path> found = of_environment(package);
+      if (found) return *found;
+      for (fs::path at = folder_; at != at.parent_path(); at = at.parent_path()) {
+        if (at.filename() == package && package_name(at).empty()) return at;
+      }
+      for (fs::path at = folder_; at != at.parent_path(); at = at.parent_path()) {
+        std::error_code ignored;
+        if (fs::is_directory(at / package, ignored) && package_name(at / package).empty()) {
+          return at / package;
+        }
+      }
       missing_.insert(package);
     }
     throw Error("package://" + package,
-                "the folder of this package is not given (--package " + package +
-                    "=FOLDER, UrdfOptions::packages), and no package.xml of that name stands in a "
-                    "folder above the URDF file or beside one of them");
+                "no folder above the URDF file is this package or has it beside it (by its name, "
+                "or that in a package.xml), and neither ROS_PACKAGE_PATH nor AMENT_PREFIX_PATH "
+                "leads to it; --package " +
+                    package + "=FOLDER says where it is");
+  }
+
+  // Where ROS has the package.
+  static std::optional<fs::path> of_environment(const std::string& package) {
+    constexpr std::array<std::pair<const char*, const char*>, 2> kVariables = {
+        {{"ROS_PACKAGE_PATH", ""}, {"AMENT_PREFIX_PATH", "share"}}};
+    for (const auto& [variable, below] : kVariables) {
+      const char* const value = std::getenv(variable);
+      std::string_view rest = value == nullptr ? "" : value;
+      while (!rest.empty()) {
+        const std::size_t end = std::min(rest.find(':'), rest.size());
+        const fs::path folder = fs::path(rest.substr(0, end)) / below;
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        std::error_code ignored;
+        if (fs::is_directory(folder / package, ignored)) return folder / package;
+        if (folder.filename() == package && fs::is_directory(folder, ignored)) return folder;
+      }
+    }
+    return std::nullopt;
   }
 
   fs::path folder_;
@@ -318,8 +447,8 @@ class MeshPaths {
 
 class ShapeReader {
  public:
-  ShapeReader(const std::filesystem::path& path, const UrdfOptions& options)
-      : paths_(path, options), options_(options) {}
+  ShapeReader(const std::filesystem::path& path, const UrdfOptions& options, int minor_version)
+      : paths_(path, options), options_(options), minor_version_(minor_version) {}
 
   LinkDescription link_of(const XmlElement& link) {
     LinkDescription result{.name = link.needed("name")};
@@ -336,7 +465,7 @@ class ShapeReader {
  private:
   LinkShape shape_of(const XmlElement& element, bool require_mesh) {
     const XmlElement solid = solid_of(element);
-    LinkShape shape{element.attribute("name").value_or(""), pose_of(element), {}};
+    LinkShape shape{element.attribute("name").value_or(""), pose_of(element, minor_version_), {}};
     if (solid.tag() == "mesh") {
       shape.geometry = mesh_of(solid, require_mesh);
     } else {
@@ -354,12 +483,17 @@ class ShapeReader {
     } else if (solid.tag() == "sphere") {
       solid.require_attributes({"radius"});
       primitive = SolidSphere{with_extent(solid.needed_number("radius"))};
+    } else if (solid.tag() == "capsule") {
+      solid.require_attributes({"radius", "length"});
+      primitive =
+          Capsule{with_extent(solid.needed_number("radius")), solid.needed_number("length")};
     } else if (solid.tag() == "cylinder") {
       solid.require_attributes({"radius", "length"});
       primitive = Cylinder{with_extent(solid.needed_number("radius")),
                            with_extent(solid.needed_number("length"))};
     } else {
-      solid.refuse("it is none of the shapes that can be read: box, cylinder, mesh, sphere");
+      solid.refuse(
+          "it is none of the shapes that can be read: box, capsule, cylinder, mesh, sphere");
     }
     at(solid, [&] { require_primitive(primitive, "shape"); });
     return primitive;
@@ -379,6 +513,7 @@ class ShapeReader {
 
   MeshPaths paths_;
   const UrdfOptions& options_;
+  int minor_version_;
 };
 
 // A fixed joint mimics nothing, whatever the element says.
@@ -389,8 +524,28 @@ void add_mimic(RobotModel& robot, const XmlElement& joint) {
   const std::string other = mimic->needed("joint");
   const double multiplier = mimic->number("multiplier", 1.0);
   const double offset = mimic->number("offset", 0.0);
+  if (kind_of(joint) != JointKind::kOne) mimic->refuse("a planar or floating joint mimics none");
   if (type_of(joint) == JointType::kFixed) return;
   at(*mimic, [&] { robot.mimic(joint.needed("name"), other, multiplier, offset); });
+}
+
+// The names of the joints whose positions are the numbers of a configuration, as the file has them;
+// nothing where that is the order of the model. `parts` names what became of each joint.
+std::vector<std::string> other_order(const XmlElement& robot,
+                                     const std::map<std::string, std::vector<std::string>>& parts,
+                                     const RobotModel& model) {
+  std::vector<std::string> names;
+  for (const XmlElement& element : robot.children("joint")) {
+    for (const std::string& name : parts.at(element.needed("name"))) {
+      const Joint& joint = model.joints()[static_cast<std::size_t>(model.find_joint(name))];
+      if (joint.moves() && joint.mimics < 0) names.push_back(name);
+    }
+  }
+  const bool is_same =
+      std::ranges::equal(names, model.variable_joints(), [&](const std::string& name, int index) {
+        return name == model.joints()[static_cast<std::size_t>(index)].name;
+      });
+  return is_same ? std::vector<std::string>() : names;
 }
 
 }  // namespace
@@ -416,21 +571,35 @@ std::string internal::urdf_text(const fs::path& path) {
 RobotDescription read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
   const internal::XmlFile file(path.string(), internal::urdf_text(path), "robot");
   const XmlElement robot = file.root();
-  const auto version = robot.attribute("version");
-  if (version && *version != "1.0") robot.refuse("only version 1.0 of URDF can be read");
+  const int minor_version = minor_version_of(robot);
   refuse_xacro(robot);
   const UrdfTree tree = TreeGatherer(robot).tree();
   RobotDescription result{.name = robot.needed("name"),
                           .model = RobotModel(tree.links.front().needed("name"))};
+  RobotModel& model = result.model;
+  ShapeReader shapes(path, options, minor_version);
+  result.links.emplace_back();
+  std::map<std::string, std::vector<std::string>> parts;  // of each joint of the file
   for (const XmlElement& element : tree.joints) {
-    const Joint joint = joint_of(element);
-    at(element, [&] {
-      result.model.add_link(link_at(element, "child"), link_at(element, "parent"), joint);
-    });
+    std::string parent = link_at(element, "parent");
+    std::vector<std::string>& names = parts[element.needed("name")];
+    const std::vector<Joint> joints = joints_of(element, minor_version, result.warnings);
+    for (const Joint& joint : joints) {
+      const bool is_last = &joint == &joints.back();
+      const std::string link = is_last ? link_at(element, "child") : joint.name;
+      at(element, [&] { model.add_link(link, parent, joint); });
+      if (!is_last) result.links.push_back({.name = link});
+      names.push_back(joint.name);
+      parent = link;
+    }
+    result.links.emplace_back();
   }
-  for (const XmlElement& joint : tree.joints) add_mimic(result.model, joint);
-  ShapeReader shapes(path, options);
-  for (const XmlElement& link : tree.links) result.links.push_back(shapes.link_of(link));
+  for (const XmlElement& joint : tree.joints) add_mimic(model, joint);
+  for (const XmlElement& link : tree.links) {
+    const auto index = static_cast<std::size_t>(model.find_link(link.needed("name")));
+    result.links[index] = shapes.link_of(link);
+  }
+  result.other_joint_order = other_order(robot, parts, model);
   return result;
 }
 

@@ -129,7 +129,7 @@ void XmlElement::require_attributes(std::initializer_list<std::string_view> know
   }
 }
 
-void XmlElement::refuse(const std::string& reason) const {
+std::string XmlElement::place_in_file() const {
   std::string place = "line " + std::to_string(element_->GetLineNum()) + ": ";
   // The nearest element with a name, below the root.
   for (const tinyxml2::XMLNode* node = element_; node->Parent() != nullptr; node = node->Parent()) {
@@ -140,7 +140,15 @@ void XmlElement::refuse(const std::string& reason) const {
     place += std::string(around->Name()) + " " + in_quotes(name) + ": ";
     break;
   }
-  throw Error(*file_, place + "<" + element_->Name() + ">: " + reason);
+  return place + "<" + element_->Name() + ">: ";
+}
+
+std::string XmlElement::place() const {
+  return *file_ + ": " + place_in_file();
+}
+
+void XmlElement::refuse(const std::string& reason) const {
+  throw Error(*file_, place_in_file() + reason);
 }
 
 XmlFile::XmlFile(const std::filesystem::path& path, std::string_view tag)

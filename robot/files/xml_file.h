@@ -52,10 +52,15 @@ class XmlElement {
   // Refuses an attribute that is not one of these.
   void require_attributes(std::initializer_list<std::string_view> known) const;
 
+  // "FILE: line 3: joint 'elbow': <limit>: ", for warnings.
+  std::string place() const;
+
   // Throws Error: the line, the element and what has a name around it, and the reason.
   [[noreturn]] void refuse(const std::string& reason) const;
 
  private:
+  std::string place_in_file() const;
+
   const tinyxml2::XMLElement* element_;
   const std::string* file_;
 };

@@ -91,6 +91,8 @@ std::map<std::string, SphereLeaf> sphere_leaves(const XmlElement& robot) {
     }
     if (leaves.contains(child)) joint.refuse("it is the second joint to \"" + child + "\"");
     if (!is_one_sphere(link->second)) continue;
+    const auto origin = joint.child("origin");
+    if (origin && origin->attribute("quat_xyzw")) continue;  // a link as any other
     if (!links.contains(parent)) joint.refuse("there is no link \"" + parent + "\"");
     leaves.insert({child, {link->second, joint, parent}});
   }
@@ -243,7 +245,8 @@ bool is_srdf(const std::filesystem::path& path) {
   const XmlElement robot = file.root();
   const auto has = [&](const char* tag) { return !robot.children(tag).empty(); };
   return !has("link") && !has("joint") &&
-         (has("link_sphere_approximation") || has("group") || has("disable_collisions"));
+         (has("link_sphere_approximation") || has("group") || has("disable_collisions") ||
+          has("disable_default_collisions") || has("enable_collisions"));
 }
 
 // A radius of zero says that a link has no spheres.
@@ -258,7 +261,11 @@ RobotSpheres read_sphere_srdf(const std::filesystem::path& path) {
     }
   }
   gathered.spheres.robot = semantics.robot_name;
-  gathered.spheres.self_collision_ignore = semantics.disabled_pairs;
+  std::vector<std::string> links;
+  for (const LinkSpheres& link : semantics.sphere_approximations) {
+    if (!link.spheres.empty()) links.push_back(link.link);
+  }
+  gathered.spheres.self_collision_ignore = disabled_among(semantics, links);
   return std::move(gathered.spheres);
 }
 
@@ -297,7 +304,7 @@ std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& co
   const bool is_new = context.original.empty();
   XmlFile file(
       context.original.string(),
-      is_new ? "<?xml version=\"1.0\" encoding=\"UTF-8\"?><robot/>" : read_file(context.original),
+      is_new ? "<?xml version=\"1.0\" encoding=\"UTF-8\"?><robot/>" : urdf_text(context.original),
       "robot");
   std::set<Names> decided = decided_pairs(file.root());
   XMLDocument& document = file.document();
@@ -305,6 +312,7 @@ std::string sphere_srdf(const RobotSpheres& spheres, const SphereFileContext& co
   if (is_new) robot.SetAttribute("name", spheres.robot.c_str());
   XMLElement* last = robot.LastChildElement("disable_collisions");
   for (const DisabledPair& pair : spheres.self_collision_ignore) {
+    if (pair.reason == kDisabledByDefault) continue;  // the file says so, link by link
     if (!decided.insert(std::minmax(pair.link_a, pair.link_b)).second) continue;
     XMLElement* added = new_pair(document, pair);
     if (last != nullptr) {

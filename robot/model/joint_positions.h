@@ -6,6 +6,7 @@
 
 #include "robot/model/robot_model.h"
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -46,10 +47,14 @@ class JointPositions {
 
 // Which joint of a configuration is beyond its limits?
 
-// Whether the position of a joint is limited: that of one that moves and is not continuous.
+// Whether the position of a joint is limited: that of one that moves, is not continuous and has
+// limits that are known.
 inline bool has_limits(const Joint& joint) {
-  return joint.moves() && joint.type != JointType::kContinuous;
+  return joint.moves() && joint.type != JointType::kContinuous && std::isfinite(joint.upper);
 }
+
+// Throws Error, naming the joint, where one that should have limits has none that are known.
+void require_limits(const RobotModel& robot);
 
 // The first joint whose position in a configuration of the robot's size is beyond its limits, those
 // that mimic others included, or null.

@@ -160,6 +160,15 @@ std::span<const double> ShortestMotion::end_of(std::span<const double> from,
   return end;
 }
 
+void require_limits(const RobotModel& robot) {
+  for (const int index : robot.variable_joints()) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
+    if (joint.type == JointType::kContinuous || has_limits(joint)) continue;
+    throw Error("joint " + joint.name,
+                "it has no limits, which are needed here: correct its <limit> in the URDF");
+  }
+}
+
 JointPositions::JointPositions(const RobotModel& robot) : has_mimics_(robot.has_mimics()) {
   for (const Joint& joint : robot.joints()) {
     if (joint.moves()) moving_.push_back(joint);

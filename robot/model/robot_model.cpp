@@ -7,6 +7,7 @@
 #include "spheretree/sphere_tree.h"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <sstream>
@@ -60,7 +61,10 @@ int RobotModel::insert(std::string name, std::string_view parent_link, Joint joi
     joint.lower = -std::numbers::pi;
     joint.upper = std::numbers::pi;
   }
-  if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower > joint.upper) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool are_unknown = joint.lower == -kInfinity && joint.upper == kInfinity;
+  const bool are_finite = std::isfinite(joint.lower) && std::isfinite(joint.upper);
+  if (!are_unknown && (!are_finite || joint.lower > joint.upper)) {
     std::ostringstream limits;
     limits << joint.lower << " and " << joint.upper;
     throw Error("joint " + joint.name, "the limits are not finite or reversed: " + limits.str());

@@ -57,9 +57,9 @@ struct Joint {
   int child_link = -1;
   Pose parent_from_joint{};                         // at position zero; made unit when added
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit length is made when added
-  double lower = 0.0;                               // limits of the position
-  double upper = 0.0;
-  int variable = -1;  // index into a configuration; -1 if fixed
+  double lower = 0.0;                               // limits of the position;
+  double upper = 0.0;                               // -inf and inf where none are known
+  int variable = -1;                                // index into a configuration; -1 if fixed
   double multiplier = 1.0;
   double offset = 0.0;
   int mimics = -1;  // the joint that it was told to follow, by its index; -1 if none
@@ -94,7 +94,7 @@ class RobotModel {
   // joint's link indices and variable, no mimic, and for a continuous joint the limits, -pi and pi:
   // one turn, for whoever draws positions. Throws Error for a name that is taken, an unknown
   // parent, an axis that is zero or not finite (of a joint that moves: that of a fixed one is of no
-  // use and replaced), and limits that are not finite or reversed.
+  // use and replaced), and limits that are reversed, or not finite but for -inf and inf together.
   int add_link(std::string name, std::string_view parent_link, Joint joint);
 
   // Adds a link as add_link() does, with a joint of a RobotModel, whose axis and origin are unit:
@@ -192,6 +192,10 @@ struct RobotDescription {
   std::string name;
   RobotModel model;
   std::vector<LinkDescription> links{};  // in the order of model.links()
+  // Where the file has joints in another order than the model: the names of those whose positions
+  // the numbers of a configuration are, in the order of the file.
+  std::vector<std::string> other_joint_order{};
+  std::vector<std::string> warnings{};  // what is odd in the file, with its line
 };
 
 // A robot with spheres on its links.

@@ -8,7 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace spherule {
 namespace {
@@ -75,6 +79,22 @@ void AllowedCollisions::allow(std::string_view first, std::string_view second) {
 void AllowedCollisions::allow(std::span<const DisabledPair> pairs) {
   for (const DisabledPair& pair : pairs) (void)(link(pair.link_a), link(pair.link_b));
   for (const DisabledPair& pair : pairs) allow(pair.link_a, pair.link_b);
+}
+
+void AllowedCollisions::apply(const SemanticDescription& semantics) {
+  std::map<std::string_view, int> links;
+  for (std::size_t i = 0; i < names_.size(); ++i) links.emplace(names_[i], static_cast<int>(i));
+  const auto with_links = [&](const std::string& first, const std::string& second, auto action) {
+    const auto a = links.find(first);
+    const auto b = links.find(second);
+    if (a != links.end() && b != links.end()) action(a->second, b->second);
+  };
+  for (const DisabledPair& pair : disabled_among(semantics, names_)) {
+    with_links(pair.link_a, pair.link_b, [&](int a, int b) { allow(a, b, AllowedReason::kGiven); });
+  }
+  for (const auto& [first, second] : enabled_only(semantics)) {
+    with_links(first, second, [&](int a, int b) { set(a, b, AllowedReason::kTested); });
+  }
 }
 
 void AllowedCollisions::allow(int first, int second, AllowedReason reason) {

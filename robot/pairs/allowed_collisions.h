@@ -68,6 +68,10 @@ class AllowedCollisions {
   // The pairs that an SRDF disables, or a file of spheres ignores. Throws Error for names that are
   // no links, before any is taken.
   void allow(std::span<const DisabledPair> pairs);
+  // As an SRDF says: the pairs that it disables, by the default of their links, too, are allowed,
+  // and those that it enables are tested, neighbours or not. Those of other robots' links are
+  // passed over.
+  void apply(const SemanticDescription& semantics);
   // Every pair, as given: links are tested against obstacles and attached objects alone.
   void allow_all();
   // Tests them again. Throws Error as allow() does, and for a link and itself.

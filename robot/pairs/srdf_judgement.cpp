@@ -15,7 +15,8 @@ namespace spherule {
 namespace {
 
 bool is_decision(std::string_view reason) {
-  constexpr std::array<std::string_view, 3> kDecisions = {"Default", "Always", "User"};
+  constexpr std::array<std::string_view, 4> kDecisions = {"Default", "Always", "User",
+                                                          kDisabledByDefault};
   return std::find(kDecisions.begin(), kDecisions.end(), reason) != kDecisions.end();
 }
 
@@ -51,7 +52,11 @@ SrdfJudgement judge_srdf(const RobotModel& robot, const SemanticDescription& sem
     std::size_t at;  // in the result
   };
   std::vector<Found> found;
-  for (const DisabledPair& pair : semantics.disabled_pairs) {
+  std::vector<std::string> links_with_body;
+  for (std::size_t i = 0; i < with_body.size(); ++i) {
+    if (with_body[i]) links_with_body.push_back(robot.links()[i].name);
+  }
+  for (const DisabledPair& pair : disabled_among(semantics, links_with_body)) {
     JudgedPair& judged = result.pairs.emplace_back();
     judged.pair = pair;
     const int first = robot.find_link(pair.link_a);
@@ -113,13 +118,11 @@ std::vector<DisabledPair> pairs_proved_never(const RobotModel& robot, const Link
 
 void add_missing_pairs(std::span<const DisabledPair> pairs, const RobotModel& robot,
                        std::vector<DisabledPair>& known) {
+  std::set<std::pair<std::string, std::string>> names;
+  for (const DisabledPair& pair : known) names.insert(std::minmax(pair.link_a, pair.link_b));
   for (const DisabledPair& pair : pairs) {
     if (robot.find_link(pair.link_a) < 0 || robot.find_link(pair.link_b) < 0) continue;
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const DisabledPair& other) {
-      return (other.link_a == pair.link_a && other.link_b == pair.link_b) ||
-             (other.link_a == pair.link_b && other.link_b == pair.link_a);
-    });
-    if (!is_known) known.push_back(pair);
+    if (names.insert(std::minmax(pair.link_a, pair.link_b)).second) known.push_back(pair);
   }
 }
 

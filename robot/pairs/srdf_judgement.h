@@ -36,8 +36,8 @@ struct JudgedPair {
   std::vector<double> witness{};  // where they touch: a configuration
   double smallest_gap = std::numeric_limits<double>::infinity();  // found, in metres; of kUnknown
   // The links touch (kTouches), though the SRDF states that they do not: its reason is not
-  // "Default", "Always" or "User", which are decisions. Any other reason, such as "Never" or
-  // "Adjacent", counts as that statement, and so does a missing one.
+  // "Default", "Always", "User" or kDisabledByDefault, which are decisions. Any other reason, such
+  // as "Never" or "Adjacent", counts as that statement, and so does a missing one.
   bool is_wrong = false;
   // The SRDF states that the links do not touch, as for is_wrong, of links for which neither a
   // contact nor a proof was found (kUnknown).
@@ -46,7 +46,9 @@ struct JudgedPair {
 
 // An SRDF's list of disabled pairs, judged.
 struct SrdfJudgement {
-  std::vector<JudgedPair> pairs{};  // in the order of the file
+  // In the order of the file; then those that are disabled by the default of a link, of links with
+  // bodies.
+  std::vector<JudgedPair> pairs{};
   // Pairs of links that are proved never to touch and are not in the list, by their indices.
   std::vector<std::pair<int, int>> could_be_added{};
 };

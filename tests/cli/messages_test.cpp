@@ -66,7 +66,7 @@ TEST_F(MessagesTest, NameTheUsersFileInOneLine) {
        "x.urdf: no link has visual geometry"},
       {"x.urdf", urdf_of("<link name=\"ba&#10;se\">" + kSolid + "</link>"),
        "robot x.urdf -o out --effort 0",
-       "out/r.curobo.yml: the name of a link, 'ba\\nse', holds a control character"},
+       "the name of a link, 'ba\\nse', holds a control character, which r.curobo.yml cannot hold"},
       {"x.urdf",
        urdf_of("<link name=\"li&#10;nk\">" + mesh("collision", "go&#27;ne.stl") + "</link>"),
        "robot x.urdf -o out", "x.urdf: line 1: link 'li\\nnk': "},

@@ -296,7 +296,6 @@ TEST_F(RobotTest, BadInputIsRefusedBeforeTheWork) {
   const std::vector<std::string> before = files();
   expect_refusals(
       {{"robot none.urdf -o out", "none.urdf"},
-       {"robot arm.urdf -o out", "parts"},
        {"robot big.urdf -o out", "millimetres"},
        {"robot long.urdf -o out --max-error 1", name + ".tree: cannot be written: the name is too"},
        {cover + "no/where", "no/where: no such folder"},

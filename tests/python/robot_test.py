@@ -116,6 +116,18 @@ def test_srdf(tmp_path, robot):
     assert ("base", "fore", "given") in allowed.pairs()
     allowed.forbid("base", "fore")
     assert allowed.allow_sampled(configurations=50) == 50
+    path.write_text(
+        '<robot name="arm"><disable_default_collisions link="base"/><wings/>'
+        '<enable_collisions link1="base" link2="fore"/></robot>'
+    )
+    semantics = spherule.read_srdf(path)
+    assert semantics.links_disabled_by_default == ("base",)
+    assert semantics.enabled_pairs == (("base", "fore"),)
+    assert "<wings>" in semantics.warnings[0]
+    of_moveit = spherule.AllowedCollisions(robot)
+    of_moveit.apply(semantics)
+    assert ("base", "hand", "given") in of_moveit.pairs()
+    assert not of_moveit.allows("base", "fore")
     scene = spherule.RobotScene(robot)
     scene.set_allowed_collisions(allowed)
     assert scene.allowed_collisions.pairs() == allowed.pairs()

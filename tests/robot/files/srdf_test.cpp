@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace spherule::test::srdf_test {
@@ -102,6 +104,51 @@ TEST(ReadSrdf, TellsWhatTheRobotHasNotGot) {
                 "disabled pair: there is no link i", "sphere approximation: there is no link k"}));
 }
 
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+Pairs names_of(const std::vector<DisabledPair>& pairs) {
+  Pairs names;
+  for (const DisabledPair& pair : pairs) names.emplace_back(pair.link_a, pair.link_b);
+  return names;
+}
+
+// As MoveIt's matrix is made: defaults first, then what is enabled, then what is disabled.
+TEST(ReadSrdf, LinksMayBeDisabledByDefault) {
+  const SemanticDescription read = read_text(
+      robot_of("<disable_default_collisions link='x'/><disable_default_collisions link='y'/>"
+               "<enable_collisions link1='a' link2='x'/><enable_collisions link1='b' link2='y'/>"
+               "<enable_collisions link1='a' link2='b'/>"
+               "<disable_collisions link1='y' link2='b' reason='Never'/>"));
+  EXPECT_EQ(read.links_disabled_by_default, (std::vector<std::string>{"x", "y"}));
+  EXPECT_TRUE(read.warnings.empty());
+  const std::vector<std::string> links = {"a", "x", "b", "y"};
+  const std::vector<DisabledPair> disabled = disabled_among(read, links);
+  EXPECT_EQ(names_of(disabled), (Pairs{{"y", "b"}, {"x", "b"}, {"x", "y"}, {"y", "a"}}));
+  EXPECT_EQ(disabled[0].reason, "Never");
+  EXPECT_EQ(disabled[1].reason, kDisabledByDefault);
+  EXPECT_EQ(enabled_only(read), (Pairs{{"a", "x"}, {"a", "b"}}));
+  EXPECT_TRUE(disabled_among(SemanticDescription(), links).empty());
+  RobotModel robot("a");
+  EXPECT_EQ(unknown_names(read, robot).front(), "disabled pair: there is no link y");
+  EXPECT_EQ(unknown_names(read, robot)[2], "disabled by default: there is no link x");
+}
+
+TEST(ReadSrdf, WarnsOfElementsThatAreNotKnown) {
+  const SemanticDescription read = read_text(robot_of(
+      "<joint_property joint_name='j' property_name='p' value='v'/><passive_joint name='j'/>"
+      "<virtual_joint name='v' type='fixed' parent_frame='w' child_link='a'/>\n"
+      "<collision_margins default_margin='0.1'/><collision_margins default_margin='0.2'/>\n"
+      "<group name='g'><frame name='f'/></group>"));
+  ASSERT_EQ(read.warnings.size(), 2U);
+  EXPECT_TRUE(read.warnings[0].ends_with(
+      "robot.srdf: line 2: <collision_margins>: it is not known there and is ignored"))
+      << read.warnings[0];
+  EXPECT_TRUE(
+      read.warnings[1].ends_with("line 3: frame 'f': <frame>: it is not known there and "
+                                 "is ignored"))
+      << read.warnings[1];
+}
+
 TEST(ReadSrdf, TellsOfSoManyNamesOnly) {
   std::string links;
   for (std::size_t i = 0; i <= kMostUnknownNames; ++i) links += "<link name='a'/>";
@@ -155,6 +202,10 @@ TEST(ReadSrdf, RefusesBadFiles) {
        {"'e'", "already"}},
       {robot_of("<disable_collisions link1='a'/>"), {"<disable_collisions>", "no link2"}},
       {robot_of("<disable_collisions link1='a' link2='a'/>"), {"with itself"}},
+      {robot_of("<disable_default_collisions/>"), {"<disable_default_collisions>", "no link"}},
+      {robot_of("<enable_collisions link1='a'/>"), {"<enable_collisions>", "no link2"}},
+      {robot_of("<enable_collisions link1='a' link2='a'/>"), {"with itself"}},
+      {robot_of("<xacro:include filename='a'/>"), {"<xacro:include>", "ends in .xacro"}},
       {robot_of("<disable_collisions link1='a' link2='\xFF'/>"), {"UTF-8"}},
       {robot_of("<link_sphere_approximation/>"), {"no link"}},
       {robot_of("<link_sphere_approximation link='a'/><link_sphere_approximation link='a'/>"),

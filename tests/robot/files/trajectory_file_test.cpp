@@ -77,6 +77,28 @@ TEST_F(TrajectoryFileTest, WithAHeaderInAnyOrder) {
   EXPECT_EQ(path.lines, (std::vector<std::size_t>{2, 3}));
 }
 
+TEST_F(TrajectoryFileTest, JointsThatAreLeftOutStandAsInTheOtherConfiguration) {
+  const std::vector<double> otherwise = {0.25, -0.75};
+  const auto read_some = [&](std::string_view text) {
+    return read_trajectory(folder_.write("path.csv", text), robot_, AngleUnit::kDegrees, otherwise);
+  };
+  const Trajectory path = read_some("time,c\n0,180\n1,90\n");
+  EXPECT_EQ(path.positions, (std::vector<double>{0.25, kPi, 0.25, kPi / 2.0}));
+  EXPECT_EQ(path.others, std::vector<std::string>{"a"});
+  EXPECT_TRUE(path.has_header);
+  EXPECT_TRUE(read_some("a,c\n1,2\n").others.empty());
+  EXPECT_FALSE(read_some("1,2\n").has_header);
+  EXPECT_EQ(reason_of([&] { read_some("1\n"); }).substr(0, 39),
+            "line 1: has 1 numbers instead of 2: a, ");
+  EXPECT_EQ(reason_of([&] { read_some("time\n1\n"); }), "line 1: it names no joint of the robot");
+  EXPECT_EQ(fault("c\n1\n"), "line 1: joint 'a' is missing");
+  EXPECT_EQ(reason_of([&] {
+              read_trajectory(folder_.write("path.csv", "c\n1\n"), robot_, AngleUnit::kRadians,
+                              std::vector{1.0});
+            }),
+            "it is not of this robot: it has 1 numbers");
+}
+
 TEST_F(TrajectoryFileTest, LinesEndWithEitherCharacterOrBoth) {
   for (const std::string end : {"\n", "\r", "\r\n"}) {
     const Trajectory path = read("time,c,a" + end + "0,1,2" + end + end + "0.1,3,4" + end);
@@ -96,8 +118,11 @@ TEST_F(TrajectoryFileTest, AJointMayBeCalledTime) {
 TEST_F(TrajectoryFileTest, RefusesWithTheLine) {
   EXPECT_EQ(fault(""), "it has no configuration");
   EXPECT_EQ(fault("a,c\n"), "it has no configuration");
-  EXPECT_EQ(fault("1,2\n3\n"), "line 2: has 1 numbers instead of 2: a, c");
-  EXPECT_EQ(fault("1,2\n\n3,4,5\n"), "line 3: has 3 numbers instead of 2: a, c");
+  EXPECT_EQ(
+      fault("1,2\n3\n"),
+      "line 2: has 1 numbers instead of 2: a, c; a first line of names says which joints they "
+      "are");
+  EXPECT_TRUE(fault("1,2\n\n3,4,5\n").starts_with("line 3: has 3 numbers instead of 2: a, c"));
   EXPECT_EQ(fault("time,a,c\n1,2\n"), "line 2: has 2 numbers instead of 3");
   EXPECT_EQ(fault("1,2\n3,x\n"), "line 2: 'x' is not a finite number");
   EXPECT_EQ(fault("1,2\n3,\n"), "line 2: '' is not a finite number");

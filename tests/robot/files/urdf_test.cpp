@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "robot/files/robot_description.h"
+#include "robot/model/joint_positions.h"
+#include "robot/model/kinematics.h"
 #include "tests/robot/refusals.h"
 #include "tests/support/effort.h"
 #include "tests/support/temp_dir.h"
@@ -11,9 +13,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <locale>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -214,6 +218,170 @@ TEST(ReadUrdf, LeavesOutWhatMeansNothing) {
   EXPECT_EQ(robot.links[0].visual.size(), 1U);
 }
 
+std::string of_version(const std::string& version, std::string text) {
+  return text.replace(0, std::string("<robot").size(), "<robot version='" + version + "'");
+}
+
+TEST(ReadUrdf, ReadsVersionsAfterTheFirst) {
+  for (const char* const version : {"1.0", "1.1", "1.2"}) {
+    EXPECT_EQ(read_text(of_version(version, link_of(""))).model.links().size(), 1U);
+  }
+  // 90 degrees about z, twice as long as a unit quaternion.
+  const std::string origin = "<origin xyz='1 2 3' quat_xyzw='0 0 1.4142135623730951 ";
+  const std::string turned = origin + "1.4142135623730951'/>";
+  const RobotDescription robot = read_text(of_version("1.1", arm_of("fixed", turned)));
+  const Pose& pose = robot.model.joints()[0].parent_from_joint;
+  EXPECT_EQ(pose.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE((pose.matrix() * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-15));
+  const std::string shape = "<collision>" + turned + kOneSphere + "</collision>";
+  EXPECT_TRUE(
+      (read_text(of_version("1.2", link_of(shape))).links[0].collision[0].link_from_shape.matrix() *
+       Eigen::Vector3d::UnitX())
+          .isApprox(Eigen::Vector3d::UnitY(), 1e-15));
+  const RobotDescription limits =
+      read_text(of_version("1.2", arm_of("revolute",
+                                         "<limit lower='-1' upper='2' effort='1' velocity='1' "
+                                         "acceleration='3' deceleration='4' jerk='5'/>")));
+  EXPECT_EQ(limits.model.joints()[0].upper, 2.0);
+  EXPECT_TRUE(limits.warnings.empty());
+  const auto refusal = [](const std::string& version, const std::string& in_joint) {
+    return refusal_of(of_version(version, arm_of("fixed", in_joint)), read_file);
+  };
+  EXPECT_NE(refusal("1.0", turned).find("of URDF 1.1"), std::string::npos);
+  EXPECT_NE(refusal("1.1", "<origin quat_xyzw='0 0 0 0'/>").find("no rotation"), std::string::npos);
+  EXPECT_NE(refusal("1.1", "<origin quat_xyzw='0 0 1'/>").find("3 numbers"), std::string::npos);
+  EXPECT_NE(refusal("1.1", "<origin rpy='0 0 0' quat_xyzw='0 0 0 1'/>").find("both"),
+            std::string::npos);
+}
+
+TEST(ReadUrdf, ReadsCapsulesByTheLengthOfTheirStraightPart) {
+  const RobotDescription robot = read_text(
+      link_of("<collision><geometry><capsule radius='0.05' length='0.3'/></geometry></collision>"
+              "<collision><geometry><capsule radius='0.05' length='0'/></geometry></collision>"));
+  const auto& capsule =
+      std::get<Capsule>(std::get<Primitive>(robot.links[0].collision[0].geometry));
+  EXPECT_EQ(capsule.radius, 0.05);
+  EXPECT_EQ(capsule.length, 0.3);
+  EXPECT_EQ(robot.links[0].collision.size(), 2U);
+}
+
+// Spheres need no limits.
+TEST(ReadUrdf, WarnsOfLimitsThatCannotBeUsed) {
+  const std::vector<std::pair<std::string, std::string>> limits = {
+      {"", "it has no <limit>"},
+      {"<limit lower='1' upper='-1'/>", "its limits are reversed: 1 and -1"},
+      {"<limit lower='-inf' upper='inf'/>", "the lower limit '-inf' is no finite number"},
+      {"<limit lower='0' upper='1e999'/>", "the upper limit '1e999' is no finite number"},
+      {"<limit lower='1,5' upper='2'/>", "the lower limit '1,5' is no finite number"},
+      {"<limit lower='' upper='2'/>", "the lower limit '' is no finite number"}};
+  for (const auto& [limit, fault] : limits) {
+    for (const char* const type : {"revolute", "prismatic"}) {
+      const RobotDescription robot = read_text(arm_of(type, limit));
+      ASSERT_EQ(robot.warnings.size(), 1U) << limit;
+      EXPECT_NE(robot.warnings[0].find("robot.urdf: line 1: joint 'elbow': <joint>: " + fault),
+                std::string::npos)
+          << robot.warnings[0];
+      const Joint& joint = robot.model.joints()[0];
+      EXPECT_FALSE(has_limits(joint));
+      EXPECT_EQ(joint.lower, -std::numeric_limits<double>::infinity());
+      EXPECT_EQ(joint.upper, std::numeric_limits<double>::infinity());
+      EXPECT_EQ(reason_of([&] { require_limits(robot.model); }, "joint elbow"),
+                "it has no limits, which are needed here: correct its <limit> in the URDF");
+    }
+  }
+  const RobotDescription robot = read_text(arm_of("revolute", "<limit effort='1'/>"));
+  EXPECT_TRUE(robot.warnings.empty());
+  EXPECT_EQ(robot.model.joints()[0].upper, 0.0);
+  require_limits(robot.model);
+}
+
+std::vector<Pose> poses_of(const RobotDescription& robot, const std::vector<double>& positions) {
+  std::vector<Pose> poses;
+  forward_kinematics(robot.model, positions, poses);
+  return poses;
+}
+
+// x = 1, y = 2 and a quarter of a turn of the joint's frame, which stands at (0, 0, 5).
+TEST(ReadUrdf, PlanarJointsAreThreeJoints) {
+  const RobotDescription robot =
+      read_text(arm_of("planar", "<origin xyz='0 0 5'/><axis xyz='0 0 2'/>"));
+  ASSERT_EQ(robot.model.variable_count(), 3);
+  ASSERT_EQ(robot.links.size(), 4U);
+  EXPECT_EQ(robot.links[1].name, "elbow/x");
+  EXPECT_EQ(robot.links[3].name, "arm");
+  EXPECT_EQ(robot.model.joints()[2].name, "elbow/theta");
+  const std::vector<Pose> poses = poses_of(robot, {1.0, 2.0, 0.5 * std::numbers::pi});
+  EXPECT_TRUE((poses[3] * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 5), 1e-15));
+  // Across x: the frame's y stays.
+  const RobotDescription upright = read_text(arm_of("planar", "<axis xyz='1 0 0'/>"));
+  const Pose moved = poses_of(upright, {1.0, 2.0, 0.0}).back();
+  EXPECT_TRUE(moved.translation().isApprox(Eigen::Vector3d(0, 2, -1), 1e-15));
+  EXPECT_EQ(read_text(arm_of("planar", "")).model.joints()[0].axis, Eigen::Vector3d::UnitX());
+}
+
+TEST(ReadUrdf, FloatingJointsAreSixJoints) {
+  const RobotDescription robot = read_text(arm_of("floating", "<origin xyz='0 0 5'/>"));
+  ASSERT_EQ(robot.model.variable_count(), 6);
+  EXPECT_EQ(robot.model.joints()[3].name, "elbow/yaw");
+  const std::vector<double> configuration = {1.0, 2.0, 3.0, 0.3, -0.4, 0.5};
+  const Pose pose = poses_of(robot, configuration).back();
+  EXPECT_EQ(pose.translation(), Eigen::Vector3d(1, 2, 8));
+  const Eigen::Matrix3d turned = (Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()))
+                                     .toRotationMatrix();
+  EXPECT_TRUE(pose.matrix().isApprox(turned, 1e-15));
+}
+
+TEST(ReadUrdf, TellsTheOrderOfTheFileWhereItIsAnother) {
+  const std::string joint = "type='continuous'><parent link='";
+  const std::string links = "<link name='a'/><link name='b'/><link name='c'/><link name='d'/>";
+  const std::string first = "<joint name='j1' " + joint + "a'/><child link='b'/></joint>";
+  const std::string second = "<joint name='j2' " + joint + "a'/><child link='c'/></joint>";
+  const std::string below_first = "<joint name='j3' " + joint + "b'/><child link='d'/></joint>";
+  EXPECT_TRUE(read_text(robot_of(links + first + below_first + second)).other_joint_order.empty());
+  EXPECT_EQ(read_text(robot_of(links + first + second + below_first)).other_joint_order,
+            (std::vector<std::string>{"j1", "j2", "j3"}));
+}
+
+// Without any package.xml: a folder of the package's name above the file, or in one of these.
+TEST(ReadUrdf, FindsPackagesByTheNameOfTheirFolder) {
+  const TempDir folder;
+  for (const char* name : {"src/my_arm/urdf", "src/my_arm/meshes", "src/tool/meshes"}) {
+    fs::create_directories(folder.path() / name);
+  }
+  for (const char* name : {"src/my_arm/meshes/a.stl", "src/tool/meshes/b.stl"}) {
+    folder.write(name, "");
+  }
+  const auto find = [&](const std::string& name) {
+    return found_mesh(folder, "src/my_arm/urdf/robot.urdf", name);
+  };
+  EXPECT_EQ(find("package://my_arm/meshes/a.stl"), "src/my_arm/meshes/a.stl");
+  EXPECT_EQ(find("package://tool/meshes/b.stl"), "src/tool/meshes/b.stl");
+  const std::string missing = reason_of([&] { find("package://gripper/meshes/b.stl"); });
+  EXPECT_NE(missing.find("--package gripper=FOLDER"), std::string::npos) << missing;
+  EXPECT_EQ(missing.find("UrdfOptions"), std::string::npos) << missing;
+}
+
+TEST(ReadUrdf, FindsPackagesWhereRosHasThem) {
+  const TempDir folder;
+  fs::create_directories(folder.path() / "ros1/tool");
+  fs::create_directories(folder.path() / "ros2/share/hand");
+  fs::create_directories(folder.path() / "robots");
+  folder.write("ros1/tool/a.stl", "");
+  folder.write("ros2/share/hand/b.stl", "");
+  const auto find = [&](const std::string& name) {
+    return found_mesh(folder, "robots/robot.urdf", name);
+  };
+  EXPECT_THROW(find("package://tool/a.stl"), Error);
+  setenv("ROS_PACKAGE_PATH", ("/nowhere:" + (folder.path() / "ros1").string()).c_str(), 1);
+  setenv("AMENT_PREFIX_PATH", (folder.path() / "ros2").c_str(), 1);
+  EXPECT_EQ(find("package://tool/a.stl"), "ros1/tool/a.stl");
+  EXPECT_EQ(find("package://hand/b.stl"), "ros2/share/hand/b.stl");
+  unsetenv("ROS_PACKAGE_PATH");
+  unsetenv("AMENT_PREFIX_PATH");
+}
+
 TEST(ReadUrdf, KeepsMeshesThatAreMissingIfTold) {
   const UrdfOptions options{.require_visual_meshes = false};
   const UrdfOptions other{.require_collision_meshes = false};
@@ -251,7 +419,8 @@ TEST(ReadUrdf, RefusesBadFiles) {
       {"<robot name='r'><link name='a'/></robot>\nx", {"line 2", "not XML"}},
       {"<robot><link name='a'/></robot>", {"no name"}},
       {robot_of(""), {"line 1", "no <link>"}},
-      {"<robot name='r' version='2.0'><link name='a'/></robot>", {"version 1.0"}},
+      {"<robot name='r' version='2.0'><link name='a'/></robot>", {"'2.0'", "versions 1.0 to 1.2"}},
+      {"<robot name='r' version='1.3'><link name='a'/></robot>", {"'1.3'", "versions 1.0 to 1.2"}},
       {robot_of("<link name='a'/><xacro:macro name='m'/>"), {"xacro"}},
       {link_of("<xacro:shapes/>"), {"xacro"}},
       {robot_of("<link/>"), {"no name"}},
@@ -285,12 +454,11 @@ TEST(ReadUrdf, RefusesBadFiles) {
       {robot_of("<link name='a'/><joint name='j' type='fixed'><child link='a'/></joint>"),
        {"joint 'j'", "no <parent>"}},
       {arm_of("fixed", "<child link='base'/>"), {"joint 'elbow'", "there is one already"}},
-      {arm_of("floating", ""), {"elbow", "planar and floating", "'fixed'"}},
-      {arm_of("planar", ""), {"elbow", "planar and floating"}},
+      {arm_of("planar", "<axis xyz='0 0 0'/>"), {"elbow", "axis is zero"}},
+      {arm_of("floating", "<mimic joint='x'/>"), {"elbow", "planar or floating"}},
       {arm_of("screw", ""), {"elbow", "no known type", "screw"}},
       {arm_of("%s%n", ""), {"elbow", "no known type"}},
       {arm_of("", ""), {"elbow", "no type"}},
-      {arm_of("revolute", ""), {"elbow", "no <limit>"}},
       {arm_of("prismatic", "<axis xyz='0 0 0'/>" + limit), {"elbow", "axis is zero"}},
       {arm_of("continuous", "<axis xyz='0 0 0'/>"), {"elbow", "axis is zero"}},
       {arm_of("continuous", "<axis/>"), {"elbow", "<axis>", "no xyz"}},
@@ -299,13 +467,6 @@ TEST(ReadUrdf, RefusesBadFiles) {
       {arm_of("continuous", "<axis xyz='0 1'/>"), {"elbow", "<axis>", "2 numbers"}},
       {arm_of("continuous", "<axis xyz='0 1 O'/>"), {"elbow", "'O'", "no finite number"}},
       {arm_of("continuous", "<axis xyz='0 nan 1'/>"), {"elbow", "'nan'"}},
-      {arm_of("revolute", "<limit lower='1' upper='-1'/>"), {"elbow", "reversed: 1 and -1"}},
-      {arm_of("revolute", "<limit lower='-inf' upper='1'/>"), {"elbow", "'-inf'"}},
-      {arm_of("revolute", "<limit lower='1,5' upper='2'/>"), {"elbow", "'1,5'"}},
-      {arm_of("revolute", "<limit lower='1e999' upper='2'/>"), {"elbow", "'1e999'"}},
-      {arm_of("revolute", "<limit lower='0x1' upper='2'/>"), {"elbow", "'0x1'"}},
-      {arm_of("revolute", "<limit lower='' upper='2'/>"), {"elbow", "0 numbers"}},
-      {arm_of("revolute", "<limit lower='+-1' upper='2'/>"), {"elbow", "'+-1'"}},
       {arm_of("fixed", "<origin xyz='1 2'/>"), {"elbow", "<origin>", "2 numbers"}},
       {arm_of("fixed", "<origin rpy='1 2 %n'/>"), {"elbow", "'%n'"}},
       {arm_of("fixed", "<origin xyz='1 2 1e16'/>"), {"elbow"}},
@@ -323,7 +484,9 @@ TEST(ReadUrdf, RefusesBadFiles) {
       {link_of("<visual><geometry/></visual>"), {"not one shape"}},
       {link_of(std::string("<collision>") + kOneSphere + kOneSphere + "</collision>"),
        {"there is one already"}},
-      {shape("collision", "<capsule radius='1' length='1'/>"), {"<capsule>", "can be read"}},
+      {shape("collision", "<cone radius='1' length='1'/>"), {"<cone>", "can be read"}},
+      {shape("collision", "<capsule radius='1'/>"), {"<capsule>", "no length"}},
+      {shape("collision", "<capsule radius='1' length='-1'/>"), {"link 'base'"}},
       {shape("collision", "<sphere/>"), {"<sphere>", "no radius"}},
       {shape("collision", "<sphere radius='-1e-9'/>"), {"link 'base'"}},
       {shape("collision", "<sphere radius='-1'/>"), {"link 'base'"}},

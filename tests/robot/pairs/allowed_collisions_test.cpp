@@ -164,6 +164,28 @@ BoxRobot rail(double upper = 1.0) {
   return robot;
 }
 
+TEST(AllowedBySrdf, DefaultsThenWhatIsEnabledThenWhatIsDisabled) {
+  RobotModel robot("base");
+  robot.add_link("mount", "base", {.name = "fix"});
+  robot.add_link("arm", "base", turning(-1, 1));
+  Joint wrist = turning(-1, 1);
+  wrist.name = "wrist";
+  robot.add_link("hand", "arm", wrist);
+  AllowedCollisions allowed(robot);
+  EXPECT_FALSE(allowed.allows("mount", "hand"));
+  SemanticDescription semantics;
+  semantics.links_disabled_by_default = {"mount", "nobody"};
+  semantics.enabled_pairs = {
+      {"arm", "mount"}, {"arm", "base"}, {"nobody", "arm"}, {"base", "mount"}};
+  semantics.disabled_pairs = {{"mount", "base", "Adjacent"}, {"nobody", "arm", "Never"}};
+  allowed.apply(semantics);
+  EXPECT_EQ(allowed.reason(1, 3), AllowedReason::kGiven);
+  EXPECT_FALSE(allowed.allows("mount", "arm")) << "enabled";
+  EXPECT_FALSE(allowed.allows("base", "arm")) << "enabled, though neighbours";
+  EXPECT_TRUE(allowed.allows("base", "mount")) << "disabled as well";
+  EXPECT_FALSE(allowed.allows("base", "hand"));
+}
+
 class SrdfJudged : public testing::Test {
  protected:
   SrdfJudgement judge(const std::vector<DisabledPair>& pairs) const {
@@ -190,6 +212,19 @@ TEST_F(SrdfJudged, WhatTouchesIsWrongUnlessItIsADecision) {
   for (const char* const reason : {"Default", "Always", "User"}) {
     EXPECT_FALSE(judge("lid", "block", reason).is_wrong) << reason;
   }
+}
+
+// Of links with bodies alone; that the pairs touch is somebody's decision.
+TEST_F(SrdfJudged, DefaultsOfLinksAreDecisions) {
+  SemanticDescription semantics;
+  semantics.links_disabled_by_default = {"lid", "bare"};
+  semantics.enabled_pairs = {{"shelf", "lid"}};
+  const SrdfJudgement judged = judge_srdf(robot_.model, semantics, proofs_);
+  ASSERT_EQ(judged.pairs.size(), 2U);
+  EXPECT_EQ(judged.pairs[0].pair.link_b, "block");
+  EXPECT_EQ(judged.pairs[0].verdict, DisabledVerdict::kTouches);
+  EXPECT_FALSE(judged.pairs[0].is_wrong);
+  EXPECT_EQ(judged.pairs[1].pair.link_b, "cart");
 }
 
 TEST_F(SrdfJudged, OthersAreToldApart) {
