@@ -103,9 +103,9 @@ bool within(const ShapeRef& a, const Pose& world_from_a, const ShapeRef& b,
 CollisionResult collide(const ShapeRef& a, const Pose& world_from_a, const ShapeRef& b,
                         const Pose& world_from_b, const CollisionRequest& request = {});
 
-// Their distance between certified bounds: `lower` never above, `upper` never below. Where they
-// touch `lower` is 0, and `upper` at most the slack, if it is not -1 in `nearest` that tells which
-// of them is inside.
+// Their distance between certified bounds: `lower` never above, `upper` never below. Where leaves
+// touch, `lower` is 0 and `upper` at most the slack. Where one shape is inside the other, both are
+// 0 and `nearest` has no pair (-1).
 DistanceResult distance(const ShapeRef& a, const Pose& world_from_a, const ShapeRef& b,
                         const Pose& world_from_b, const DistanceRequest& request = {});
 
