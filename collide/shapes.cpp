@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "collide/meshes/mesh_inside.h"
+#include "collide/meshes/spheres_inside.h"
 #include "collide/search/box_gap.h"
 #include "collide/search/nearest_first.h"
 #include "collide/search/queries.h"
@@ -180,6 +181,15 @@ class BodyPair {
       return found.value_or(false);
     };
     if (!holder.has_inside()) return false;
+    if (other.mesh == nullptr && !other.convex) {
+      // A tree is the first of the two, and none of its spheres touches a triangle here.
+      const internal::SpheresInside spheres(*other.tree, *holder.solid, pose_);
+      const std::int32_t found = spheres.find();
+      if (found < 0) return false;
+      const Vector3d& center = other.tree->spheres()[static_cast<std::size_t>(found)].center;
+      return spheres.certainly_contains(spheres.in_mesh(center)) ? std::optional(true)
+                                                                 : std::nullopt;
+    }
     if (other.mesh == nullptr) {
       if (holds(Vector3d::Zero())) return true;
     } else {

@@ -98,6 +98,8 @@ PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCov
   for (const std::string& warning : prepared.warnings) warn(warning);
   AllowedCollisions allowed = prepared.scene.allowed_collisions();
   allowed.allow(robot.ignored);
+  // What the SRDF enables is tested, whatever the file of spheres ignores.
+  if (scene.srdf) allowed.apply(read_srdf(*scene.srdf));
   prepared.scene.set_allowed_collisions(std::move(allowed));
   return prepared;
 }

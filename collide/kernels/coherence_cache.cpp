@@ -109,8 +109,7 @@ constexpr int kMostTests = 2;
 
 // What a query saves by the cache, in searches of a configuration, measured roughly: if that alone
 // answers; if bodies that are grown are apart; if they are searched as they are after all; if
-// nothing was tried; of a motion, if it proves it, and if it does not. Where the cache has cost
-// more than it saved by kMostLost, it pauses.
+// nothing was tried. Where the cache has cost more than it saved by kMostLost, it pauses.
 constexpr double kFromMemory = 0.75;
 constexpr double kGrown = -0.5;
 constexpr double kGrownInVain = -1.5;

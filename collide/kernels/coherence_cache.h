@@ -91,7 +91,8 @@ class MovedSphere {
 //
 // Configurations that are far from the one before are searched as if there were no memory. So are
 // those of a path in whose steps the memory has cost more than it saved, for a while, and for twice
-// as long when it is tried again in vain.
+// as long when it is tried again in vain. Motions (is_free_along()) are not counted and never
+// pause.
 class CoherenceCache {
  public:
   // `reach` and `tilt` of the bodies as TreeCheck has them.

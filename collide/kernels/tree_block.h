@@ -31,9 +31,10 @@
 namespace spherule::internal::SPHERULE_KERNEL {
 namespace {
 
-// Up to KernelMemory::widest, a part of its radius, a body is grown for a search of several
-// configurations: less after a search that finds so many pairs of leaves for each of them that
-// single searches cost less, a little more after each time that it was too little.
+// For one search of several configurations a body is grown by at most KernelMemory::widest of its
+// radius. A search that finds more than kManyFound pairs of leaves for each configuration, or has
+// no room, lowers that to half of what it used; each time that it is not enough it rises by kWiden,
+// up to kWidest.
 constexpr float kWidest = 0.25F;
 constexpr float kWiden = 1.0F + 0x1p-5F;
 constexpr std::int32_t kManyFound = 8;

@@ -101,7 +101,8 @@ struct TrianglePair {
 struct Contact {
   ContactKind kind = ContactKind::kLeaves;
   // Which leaves: indices of spheres, for two covered meshes of their covers; of triangles; 0 for a
-  // solid. Where a sphere touches a SolidMesh, and for kInside, -1 stands for the inside.
+  // solid. Where a sphere touches a SolidMesh, -1 stands for the inside. For kInside the two nearest
+  // leaves; of two covered meshes the two spheres that overlap deepest.
   SpherePair leaves;
   // Lower bound of the penetration depth of these two leaves, in exact arithmetic under exactly the
   // given poses: so far, at least, one of them has to be moved for the two to part; for kInside one

@@ -445,12 +445,15 @@ ConvexGap ConvexPair::half_space_gap() const {
   const Convex& half = swapped ? a_ : b_;
   const Convex& other = swapped ? b_ : a_;
   const Vector3d n = half.disc_axis.normalized();
-  const Vector3d point = other.is_half_space ? other.points[0] : extreme(other, -n).point;
+  const Extreme reach = other.is_half_space ? Extreme{0.0, other.points[0]} : extreme(other, -n);
+  const Vector3d& point = reach.point;
   const double gap = n.dot(point - half.points[0]);
   ConvexGap result;
   result.upper = gap - other.radius + 2.0 * error_;
-  result.lower = other.is_half_space ? -std::numeric_limits<double>::infinity()
-                                     : gap - other.radius - 2.0 * error_;
+  // By the support, not by the point, which of a disc may be its centre (in_plane()).
+  result.lower = other.is_half_space
+                     ? -std::numeric_limits<double>::infinity()
+                     : -(reach.along + n.dot(half.points[0])) - other.radius - 2.0 * error_;
   result.a = point;
   result.b = point - gap * n;
   result.axis = n;

@@ -11,7 +11,7 @@
 #include <array>
 #include <map>
 
-// Queries of two bodies. Which pairs there are, the overloads of the library say.
+// Queries of any two bodies.
 
 namespace spherule::python {
 namespace {
@@ -37,20 +37,13 @@ Placed placed(py::handle a, py::handle world_from_a, py::handle b, py::handle wo
           pose_of(world_from_b, "world_from_b")};
 }
 
-// The answer of `query`, without the lock, for two bodies that the library has it for.
+// The answer of `query`, without the lock.
 template <class Answer, class Query>
-Answer answer(const Placed& at, const char* name, const Query& query) {
+Answer answer(const Placed& at, const Query& query) {
   return std::visit(
       [&](const auto& a, const auto& b) -> Answer {
-        if constexpr (requires {
-                        query(content(a), at.world_from_a, content(b), at.world_from_b);
-                      }) {
-          const WithoutLock unlocked;
-          return query(content(a), at.world_from_a, content(b), at.world_from_b);
-        } else {
-          throw py::type_error(std::string(name) +
-                               ": there is no such query of these two kinds of bodies");
-        }
+        const WithoutLock unlocked;
+        return query(content(a), at.world_from_a, content(b), at.world_from_b);
       },
       at.a, at.b);
 }
@@ -67,7 +60,7 @@ py::array pairs_of(std::vector<SpherePair> pairs) {
 
 bool collides_of(const py::object& a, const py::object& world_from_a, const py::object& b,
                  const py::object& world_from_b) {
-  return answer<bool>(placed(a, world_from_a, b, world_from_b), "collides",
+  return answer<bool>(placed(a, world_from_a, b, world_from_b),
                       SPHERULE_QUERY(collides(a, at_a, b, at_b)));
 }
 
@@ -77,9 +70,8 @@ py::object collide_of(const py::object& a, const py::object& world_from_a, const
   const CollisionRequest request = {.max_pairs = count_of(max_pairs, "max_pairs"),
                                     .max_node_tests = count_of(max_node_tests, "max_node_tests"),
                                     .max_time = time_of(max_seconds)};
-  CollisionResult found =
-      answer<CollisionResult>(placed(a, world_from_a, b, world_from_b), "collide",
-                              SPHERULE_QUERY(collide(a, at_a, b, at_b, request)));
+  CollisionResult found = answer<CollisionResult>(
+      placed(a, world_from_a, b, world_from_b), SPHERULE_QUERY(collide(a, at_a, b, at_b, request)));
   return make_result("CollisionResult", verdict_of(found.verdict), pairs_of(std::move(found.pairs)),
                      found.complete, found.distance_lower_bound, found.cost.node_tests,
                      found.cost.leaf_tests);
@@ -87,7 +79,7 @@ py::object collide_of(const py::object& a, const py::object& world_from_a, const
 
 bool within_of(const py::object& a, const py::object& world_from_a, const py::object& b,
                const py::object& world_from_b, double clearance) {
-  return answer<bool>(placed(a, world_from_a, b, world_from_b), "within",
+  return answer<bool>(placed(a, world_from_a, b, world_from_b),
                       SPHERULE_QUERY(within(a, at_a, b, at_b, clearance)));
 }
 
@@ -98,7 +90,7 @@ py::object distance_of(const py::object& a, const py::object& world_from_a, cons
                                    .enough = enough,
                                    .max_node_tests = count_of(max_node_tests, "max_node_tests"),
                                    .max_time = time_of(max_seconds)};
-  const auto found = answer<DistanceResult>(placed(a, world_from_a, b, world_from_b), "distance",
+  const auto found = answer<DistanceResult>(placed(a, world_from_a, b, world_from_b),
                                             SPHERULE_QUERY(distance(a, at_a, b, at_b, request)));
   return make_result("DistanceResult", found.lower, found.upper,
                      py::make_tuple(found.nearest.a, found.nearest.b), found.cost.node_tests,
@@ -118,8 +110,8 @@ py::object object_of(const Contact& contact) {
 py::object deepest_of(const py::object& a, const py::object& world_from_a, const py::object& b,
                       const py::object& world_from_b) {
   const Placed at = placed(a, world_from_a, b, world_from_b);
-  const auto found = answer<std::optional<Contact>>(
-      at, "deepest_contact", SPHERULE_QUERY(deepest_contact(a, at_a, b, at_b)));
+  const auto found =
+      answer<std::optional<Contact>>(at, SPHERULE_QUERY(deepest_contact(a, at_a, b, at_b)));
   if (!found) return py::none();
   const bool is_of_solid =
       std::holds_alternative<const SphereTree*>(at.a) &&

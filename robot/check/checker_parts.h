@@ -9,6 +9,7 @@
 #include "robot/check/lane_check.h"
 #include "robot/check/robot_checker.h"
 #include "robot/check/static_trees.h"
+#include "robot/model/joint_positions.h"
 #include "robot/model/kinematics.h"
 #include "robot/model/robot_model.h"
 
@@ -38,6 +39,7 @@ struct RobotChecker::Parts {
         pairs(std::move(all)),
         bodies(std::move(body_names)),
         obstacles(std::move(obstacle_names)) {
+    if (enforces_limits) require_limits(robot);
     const internal::RobotPlanSource source = internal::make_plan_source(pairs);
     lanes.emplace(pairs, source, options.instructions);
     if (pairs.static_tree_pairs_begin() == pairs.pairs().size()) return;

@@ -169,6 +169,13 @@ class Preparation {
     const SemanticDescription semantics = read_srdf(*description_.srdf);
     warnings_.insert(warnings_.end(), semantics.warnings.begin(), semantics.warnings.end());
     allowed.apply(semantics);
+    for (const auto& [first, second] : enabled_only(semantics)) {
+      for (const std::string& link : {first, second}) {
+        if (scene_.robot().find_link(link) >= 0) continue;
+        warnings_.push_back(description_.srdf->string() + ": enable_collisions names link '" +
+                            link + "', which the robot does not have: the pair is not enabled");
+      }
+    }
     scene_.set_allowed_collisions(std::move(allowed));
   }
 

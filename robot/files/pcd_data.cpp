@@ -69,8 +69,11 @@ class PcdReader {
     const std::string_view form = read_header();
     place_fields();
     PcdPoints result;
+    result.is_rounded = std::any_of(axes_.begin(), axes_.end(), [](const Field& field) {
+      return field.type != 'F' && field.size == 8;
+    });
     if (form == "ascii") {
-      result.is_text = true;
+      result.is_rounded = true;
       result.points = text_points();
     } else if (form == "binary") {
       result.points = binary_points(take(count_ * point_bytes_));

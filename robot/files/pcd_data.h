@@ -11,7 +11,7 @@ namespace spherule::internal {
 
 struct PcdPoints {
   std::vector<Eigen::Vector3d> points{};  // also those with coordinates that are not finite
-  bool is_text = false;
+  bool is_rounded = false;                // from text, or whole numbers of 8 bytes
 };
 
 // The points of a PCD file (pointclouds.org, "The PCD (Point Cloud Data) file format"): text,

@@ -157,7 +157,7 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, double scale)
   } else if (extension == "pcd") {
     internal::PcdPoints read = internal::read_pcd(content, file);
     cloud.points = std::move(read.points);
-    is_rounded = read.is_text;
+    is_rounded = read.is_rounded;
   } else {
     cloud.points = text_points(content, file, extension == "pts");
   }

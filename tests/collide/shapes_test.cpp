@@ -455,6 +455,32 @@ TEST(Shapes, WhatIsInsideTouches) {
               collides(HalfSpace{}, outside, surface, inside));
 }
 
+// A tree is where its spheres are, not where its frame is.
+TEST(Shapes, ATreeInsideASolidIsFoundByItsSpheres) {
+  const SolidMesh solid(make_box({4, 4, 4}));
+  const SphereTree tree = build_tree(std::vector<Sphere>{{{10, 0, 0}, 0.1}});
+  const Pose into = Pose::from_translation({-10, 0, 0});
+  for (const auto& [at, verdict] :
+       {std::pair(into, Verdict::kCollision), std::pair(Pose(), Verdict::kFree)}) {
+    EXPECT_EQ(collide(tree, at, solid, Pose()).verdict, verdict);
+    EXPECT_EQ(collide(solid, Pose(), tree, at).verdict, verdict);
+    EXPECT_EQ(collides(tree, at, solid, Pose()), verdict == Verdict::kCollision);
+  }
+}
+
+// A disc that is all but parallel to the plane: its rim reaches below its centre.
+TEST(Shapes, ARimThatDipsIntoAHalfSpaceIsFound) {
+  const Cylinder cylinder{.radius = 1.0, .length = 0.2};
+  for (const double tilt : {1e-13, 4e-13, 8e-13, 1e-12, 1e-10}) {
+    // The lowest point of the rim is at about length / 2 + tilt below the centre.
+    const Pose at(Eigen::Quaterniond(1.0, 0.5 * tilt, 0.0, 0.0),
+                  Eigen::Vector3d(0.0, 0.0, 0.1 + 0.7 * tilt));
+    EXPECT_TRUE(collides(cylinder, at, HalfSpace{}, Pose())) << tilt;
+    EXPECT_TRUE(collides(HalfSpace{}, Pose(), cylinder, at)) << tilt;
+    EXPECT_EQ(distance(cylinder, at, HalfSpace{}, Pose()).lower, 0.0) << tilt;
+  }
+}
+
 TEST(Shapes, MotionsThatAreFreeAreFreeAtEveryInstant) {
   Random random(23);
   int free = 0, hits = 0;
