@@ -48,19 +48,24 @@ using Shape = std::variant<std::shared_ptr<const SphereTree>, std::shared_ptr<co
 // Cylinder, Capsule, HalfSpace, Primitive, RoundedSolid or Shape. Refers to trees and meshes.
 class ShapeRef {
  public:
+  // What it refers to; a solid is held itself.
   using Alternatives = std::variant<const SphereTree*, const MeshTree*, const SolidMesh*,
                                     const CoveredMesh*, RoundedSolid>;
 
+  // Each of the kinds above. Trees and meshes must outlive it.
   ShapeRef(const SphereTree& tree) : shape_(&tree) {}
   ShapeRef(const MeshTree& surface) : shape_(&surface) {}
   ShapeRef(const SolidMesh& solid) : shape_(&solid) {}
   ShapeRef(const CoveredMesh& mesh) : shape_(&mesh) {}
   ShapeRef(const RoundedSolid& solid) : shape_(solid) {}
+  // A Primitive or one of its kinds, without a rounding.
   template <class Solid>
   requires std::constructible_from<Primitive, const Solid&> ShapeRef(const Solid& solid)
       : shape_(RoundedSolid{Primitive(solid), 0.0}) {}
+  // Of what the pointer leads to.
   ShapeRef(const Shape& shape);
 
+  // The shape, for a visitor.
   const Alternatives& get() const { return shape_; }
 
  private:

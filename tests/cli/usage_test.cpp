@@ -151,7 +151,8 @@ TEST_F(WrongFileTest, RobotsHaveTheirOwnCommands) {
 
   expect_info("arm.urdf", "links: 2, 1 with collision geometry, 0 with visual geometry\n");
   expect_info("arm.urdf", "  lift: -1 to 2 m\n");
-  expect_info("arm.srdf", "disabled pairs of links: 1\n");
+  expect_info("arm.srdf",
+              "disabled pairs of links: 1, links disabled by default: 0, enabled pairs: 0\n");
   expect_info("arm.yml", "spheres: 1 on 1 links\n  base: 1\n");
   expect_info("cell.json", "a scene (spherule check");
   write("path.csv", "lift\n-0.5\n");
