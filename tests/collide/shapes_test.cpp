@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -405,7 +406,8 @@ TEST(Shapes, SolidsFaceToFaceNextToContact) {
     const Primitive other =
         i % 4 < 2 ? Primitive(Box{{size, size, size}}) : Primitive(Cylinder{0.5 * size, size});
     // Along z, both as they stand; then both by one pose, which moves them by rounding only.
-    const double gap = size * std::vector<double>{1e-3, 1e-9, 1e-12, 0.0, -1e-12, -1e-3}[i % 6];
+    const std::array<double, 6> gaps = {1e-3, 1e-9, 1e-12, 0.0, -1e-12, -1e-3};
+    const double gap = size * gaps[static_cast<std::size_t>(i % 6)];
     const Pose beside(Quaterniond(Eigen::AngleAxisd(random.between(-3, 3), Vector3d::UnitZ())),
                       {0.3 * size, 0.1 * size, half.z() + rounding + 0.5 * size + gap});
     const Pose world = i % 5 == 0 ? Pose() : random.pose(size);
