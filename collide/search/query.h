@@ -101,13 +101,14 @@ struct TrianglePair {
 struct Contact {
   ContactKind kind = ContactKind::kLeaves;
   // Which leaves: indices of spheres, for two covered meshes of their covers; of triangles; 0 for a
-  // solid. Where a sphere touches a SolidMesh, -1 stands for the inside. For kInside the two nearest
-  // leaves; of two covered meshes the two spheres that overlap deepest.
+  // solid. Where a sphere touches a SolidMesh, -1 stands for the inside. For kInside the two
+  // nearest leaves; of two covered meshes the two spheres that overlap deepest.
   SpherePair leaves;
   // Lower bound of the penetration depth of these two leaves, in exact arithmetic under exactly the
   // given poses: so far, at least, one of them has to be moved for the two to part; for kInside one
-  // body. In the unit of the bodies, rounded downward; below zero where rounding alone may have
-  // made them touch. Nothing is said of how far the bodies have to be moved to part.
+  // body, but of two covered meshes the two spheres of their covers. In the unit of the bodies,
+  // rounded downward; below zero where rounding alone may have made them touch. Nothing is said of
+  // how far the bodies have to be moved to part.
   double penetration_depth = 0.0;
   // Of length 1, from a to b: the direction in which b leaves a soonest, up to rounding.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();

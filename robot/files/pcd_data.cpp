@@ -76,6 +76,7 @@ class PcdReader {
       result.is_rounded = true;
       result.points = text_points();
     } else if (form == "binary") {
+      if (count_ > (bytes_.size() - at_) / point_bytes_) fail("the file is cut short");
       result.points = binary_points(take(count_ * point_bytes_));
     } else if (form == "binary_compressed") {
       result.points = compressed_points();
@@ -117,7 +118,11 @@ class PcdReader {
           if (!seen.contains(needed)) in_.fail("the header lacks " + in_quotes(needed));
         }
         if (width < 0 && points < 0) in_.fail("the header lacks 'POINTS'");
+        // At most 2^62, as each is below 2^31.
         if (points < 0) points = width * height;
+        if (points > std::numeric_limits<std::int32_t>::max()) {
+          in_.fail("no usable number of points");
+        }
         if (width >= 0 && width * height != points) {
           in_.fail("'POINTS' is not 'WIDTH' times 'HEIGHT'");
         }
@@ -230,10 +235,13 @@ class PcdReader {
     if (bytes_.size() - at_ < kSizes) fail("the file is cut short");
     const std::uint64_t packed = number_at<std::uint32_t>(bytes_.data() + at_);
     const std::uint64_t unpacked = number_at<std::uint32_t>(bytes_.data() + at_ + 4);
-    if (unpacked != count_ * point_bytes_)
-      fail("the size of the unpacked data is not that of the points");
-    if (unpacked > kMostUnpacked || count_ > kMostUnpackedPoints) {
+    // In this order: so the product has no overflow.
+    if (std::max<std::uint64_t>(unpacked, point_bytes_) > kMostUnpacked ||
+        count_ > kMostUnpackedPoints) {
       fail("it unpacks to more than 2^29 bytes or 2^26 points");
+    }
+    if (unpacked != count_ * point_bytes_) {
+      fail("the size of the unpacked data is not that of the points");
     }
     at_ += kSizes;
     const std::string data = unpack(take(packed), static_cast<std::size_t>(unpacked));

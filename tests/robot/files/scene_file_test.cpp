@@ -557,6 +557,20 @@ TEST_F(PointCloudFileTest, PcdOfEveryType) {
   EXPECT_EQ(read_one("F", "8", 0.1), Vector3d::Constant(0.1));
 }
 
+// Products of what a header says may exceed 64 bits.
+TEST_F(PointCloudFileTest, PcdHeadersThatPromiseTooMuch) {
+  const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  for (const char* form : {"binary", "binary_compressed", "ascii"}) {
+    const std::string data = std::string("DATA ") + form + "\n";
+    const std::string many =
+        fault("a.pcd", fields + "WIDTH 1073741824\nHEIGHT 1073741824\n" + data);
+    EXPECT_NE(many.find("no usable number of points"), std::string::npos) << many;
+    const std::string few = fault("a.pcd", fields + "POINTS 2147483647\n" + data);
+    EXPECT_NE(few, "nothing is wrong");
+    EXPECT_EQ(few.find("memory"), std::string::npos) << few;
+  }
+}
+
 TEST_F(PointCloudFileTest, PcdCompressed) {
   const std::string data = pcd_data(kWhole, true);
   const std::string head = pcd_header("binary_compressed");
