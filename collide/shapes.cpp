@@ -274,13 +274,18 @@ bool come_within(const BodyPair& pair) {
          pair.may_be_inside();
 }
 
-DistanceResult distance_of(const BodyPair& pair, const DistanceRequest& request) {
+// Of the leaves, without the growths.
+DistanceResult nearest_leaves(const BodyPair& pair, const DistanceRequest& request) {
   const SphereTree &a = *pair.a().tree, &b = *pair.b().tree;
+  const internal::PairSpace space(a, b, pair.pose(), pair);
+  return internal::NearestFirst(space, pair.pose().gap_error(), request)
+      .run(NodePair(0, 0), pair.pose().gap(a.sphere(0), b.sphere(0)));
+}
+
+DistanceResult distance_of(const BodyPair& pair, const DistanceRequest& request) {
   DistanceRequest to_leaves = request;
   to_leaves.enough = add_up(request.enough, pair.growth());
-  const internal::PairSpace space(a, b, pair.pose(), pair);
-  DistanceResult result = internal::NearestFirst(space, pair.pose().gap_error(), to_leaves)
-                              .run(NodePair(0, 0), pair.pose().gap(a.sphere(0), b.sphere(0)));
+  DistanceResult result = nearest_leaves(pair, to_leaves);
   if (pair.growth() > 0.0) {
     result.lower = std::max(0.0, sub_down(result.lower, pair.growth()));
     result.upper = std::max(0.0, sub_up(result.upper, pair.growth()));
@@ -310,19 +315,13 @@ CollisionResult collide_of(const BodyPair& pair, const CollisionRequest& request
 
 // Of two bodies of which collides() says that they touch.
 std::optional<Contact> contact_of(const BodyPair& pair) {
-  const SphereTree &a = *pair.a().tree, &b = *pair.b().tree;
   DeepestLeaves query(pair);
-  internal::traverse(a, b, pair.pose(), query);
+  internal::traverse(*pair.a().tree, *pair.b().tree, pair.pose(), query);
   if (query.deepest())
     return internal::placed_contact(query.leaves(), *query.deepest(), pair.world_from_a());
   // One is inside the other, and has to be moved by the distance of the surfaces that are grown,
-  // and by the growths, at least; or
-  // tests of the two nearest leaves differ by rounding.
-  const internal::PairSpace space(a, b, pair.pose(), pair);
-  const DistanceRequest request;
-  const DistanceResult nearest =
-      internal::NearestFirst(space, pair.pose().gap_error(), request)
-          .run(NodePair(0, 0), pair.pose().gap(a.sphere(0), b.sphere(0)));
+  // and by the growths, at least; or tests of the two nearest leaves differ by rounding.
+  const DistanceResult nearest = nearest_leaves(pair, DistanceRequest{});
   const bool inside = pair.may_be_inside();
   // From the nearest points; an inside is left through them.
   internal::ConvexContact found =
@@ -512,7 +511,6 @@ DistanceResult distance(const ShapeRef& a, const Pose& world_from_a, const Shape
 
 std::optional<Contact> deepest_contact(const ShapeRef& a, const Pose& world_from_a,
                                        const ShapeRef& b, const Pose& world_from_b) {
-  if (!collides(a, world_from_a, b, world_from_b)) return std::nullopt;
   return answer<std::optional<Contact>>(
       a, world_from_a, b, world_from_b, 0.0,
       [&]<class X, class Y>(const X& x, const Pose& at_x, const Y& y,
@@ -524,7 +522,9 @@ std::optional<Contact> deepest_contact(const ShapeRef& a, const Pose& world_from
           return std::nullopt;
         }
       },
-      contact_of);
+      [&](const BodyPair& pair) {
+        return collides(a, world_from_a, b, world_from_b) ? contact_of(pair) : std::nullopt;
+      });
 }
 
 namespace internal {
