@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/rounding.h"
 #include "collide/solids/primitive.h"
+#include "collide/solids/solid_fields.h"
 #include "geometry/pose.h"
 
 #include <Eigen/Geometry>
@@ -47,17 +48,17 @@ void find_equal(std::vector<LinkParts>& parts, const std::vector<std::size_t>& f
 }  // namespace
 
 double largest_radius(std::span<const LinkShape> shapes) {
-  struct Radius {
-    double operator()(const Box&) const { return 0.0; }
-    double operator()(const HalfSpace&) const { return 0.0; }
-    double operator()(const SolidSphere& sphere) const { return sphere.radius; }
-    double operator()(const Cylinder& cylinder) const { return cylinder.radius; }
-    double operator()(const Capsule& capsule) const { return capsule.radius; }
+  const auto radius_of = [](const auto& solid) {
+    if constexpr (requires { solid.radius; }) {
+      return solid.radius;
+    } else {
+      return 0.0;
+    }
   };
   double largest = 0.0;
   for (const LinkShape& shape : shapes) {
     const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
-    if (primitive != nullptr) largest = std::max(largest, std::visit(Radius{}, *primitive));
+    if (primitive != nullptr) largest = std::max(largest, std::visit(radius_of, *primitive));
   }
   return largest;
 }
@@ -373,67 +374,14 @@ bool enclose_no_cavity(std::span<const Sphere> spheres) {
   return overlap_two_others_at_most(spheres) || WaysOut(spheres).lead_from_everywhere();
 }
 
-// How far a point is from a convex solid about the origin; within it, less the distance to its
-// surface. Up to rounding.
-struct SignedDistance {
-  Vector3d point;
+// The field of a solid (collide/solids/solid_fields.h), for what `use` makes of it.
+template <class Use>
+auto of_field(const Primitive& primitive, const Use& use) {
+  return std::visit([&](const auto& solid) { return use(internal::field_of(solid)); }, primitive);
+}
 
-  double operator()(const Box& box) const {
-    const Vector3d beyond = point.cwiseAbs() - box.size / 2.0;
-    return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
-  }
-  double operator()(const SolidSphere& sphere) const { return point.norm() - sphere.radius; }
-  double operator()(const Capsule& capsule) const {
-    const double beyond = std::max(std::abs(point.z()) - capsule.length / 2.0, 0.0);
-    return std::hypot(point.x(), point.y(), beyond) - capsule.radius;
-  }
-  double operator()(const Cylinder& cylinder) const {
-    const double across = std::hypot(point.x(), point.y()) - cylinder.radius;
-    const double along = std::abs(point.z()) - cylinder.length / 2.0;
-    return std::hypot(std::max(across, 0.0), std::max(along, 0.0)) +
-           std::min(std::max(across, along), 0.0);
-  }
-  double operator()(const HalfSpace&) const { return point.z(); }
-};
-
-// The point of a solid that is nearest to another, up to rounding.
-struct NearestPoint {
-  Vector3d point;
-
-  static double within(double x, double most) { return std::clamp(x, -most, most); }
-  // In the ball about a point.
-  Vector3d in_ball(const Vector3d& center, double radius) const {
-    const Vector3d from = point - center;
-    const double distance = from.norm();
-    return distance <= radius ? point : Vector3d(center + radius / distance * from);
-  }
-
-  Vector3d operator()(const Box& box) const {
-    return point.cwiseMax(-box.size / 2.0).cwiseMin(box.size / 2.0);
-  }
-  Vector3d operator()(const SolidSphere& sphere) const {
-    return in_ball(Vector3d::Zero(), sphere.radius);
-  }
-  Vector3d operator()(const Capsule& capsule) const {
-    return in_ball({0.0, 0.0, within(point.z(), capsule.length / 2.0)}, capsule.radius);
-  }
-  Vector3d operator()(const Cylinder& cylinder) const {
-    const double across = std::hypot(point.x(), point.y());
-    const double share = across <= cylinder.radius ? 1.0 : cylinder.radius / across;
-    return {share * point.x(), share * point.y(), within(point.z(), cylinder.length / 2.0)};
-  }
-  Vector3d operator()(const HalfSpace&) const { return point; }
-};
-
-double size_of(const Primitive& primitive) {
-  struct Size {
-    double operator()(const Box& box) const { return box.size.norm(); }
-    double operator()(const SolidSphere& sphere) const { return sphere.radius; }
-    double operator()(const Cylinder& cylinder) const { return cylinder.radius + cylinder.length; }
-    double operator()(const Capsule& capsule) const { return capsule.radius + capsule.length; }
-    double operator()(const HalfSpace&) const { return 0.0; }
-  };
-  return std::visit(Size{}, primitive);
+double reach_of(const Primitive& primitive) {
+  return of_field(primitive, [](const auto& field) { return field.reach(); });
 }
 
 }  // namespace
@@ -463,7 +411,7 @@ std::optional<std::vector<Sphere>> exact_spheres(const LinkDescription& link, Li
 
 // What a sphere about a point at the signed distance d of a convex solid has furthest from it is at
 // d + r. The point in the frame of the solid is off by 41 u of its distance from the frame's origin
-// (pose.h); the rest is a dozen operations.
+// (pose.h), its signed distance by 8 u more (solid_fields.h).
 std::optional<double> protrusion_over_primitives(std::span<const LinkShape> shapes,
                                                  std::span<const Sphere> spheres) {
   double result = 0.0;
@@ -483,9 +431,10 @@ std::optional<double> protrusion_over_primitives(std::span<const LinkShape> shap
       }
       const Vector3d point = shape.link_from_shape.inverse() * sphere.center;
       const double size =
-          norm_upper(sphere.center) + norm_upper(origin) + sphere.radius + size_of(*primitive);
-      least = std::min(least, std::visit(SignedDistance{point}, *primitive) + sphere.radius +
-                                  256.0 * kUnitRoundoff * size);
+          norm_upper(sphere.center) + norm_upper(origin) + sphere.radius + reach_of(*primitive);
+      const double distance =
+          of_field(*primitive, [&](const auto& field) { return field.signed_distance(point); });
+      least = std::min(least, distance + sphere.radius + 256.0 * kUnitRoundoff * size);
     }
     result = std::max(result, least);
   }
@@ -499,9 +448,11 @@ PrimitiveLeak leak_of_primitives(std::span<const LinkShape> shapes, std::span<co
     const auto* const primitive = std::get_if<Primitive>(&shape.geometry);
     if (primitive == nullptr) continue;
     const Pose& pose = shape.link_from_shape;
-    const Vector3d point = pose * std::visit(NearestPoint{pose.inverse() * near}, *primitive);
+    const Vector3d point = pose * of_field(*primitive, [&](const auto& field) {
+                             return field.nearest(pose.inverse() * near);
+                           });
     const double error = 256.0 * kUnitRoundoff *
-                         (norm_upper(near) + norm_upper(pose.translation()) + size_of(*primitive));
+                         (norm_upper(near) + norm_upper(pose.translation()) + reach_of(*primitive));
     double depth = std::numeric_limits<double>::infinity();
     for (const Sphere& sphere : spheres) {
       depth = std::min(
