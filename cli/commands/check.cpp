@@ -93,14 +93,9 @@ std::size_t explained_of(const TrajectoryInput& input) {
 PreparedScene prepare(SphereRobot robot, const SceneDescription& scene, RobotCoverOptions options) {
   ProgressBar bar;
   options.progress = bar.callback();
-  PreparedScene prepared = prepare_scene(std::move(robot.model), scene, options);
+  PreparedScene prepared = prepare_scene(std::move(robot.model), scene, options, robot.ignored);
   bar.clear();
   for (const std::string& warning : prepared.warnings) warn(warning);
-  AllowedCollisions allowed = prepared.scene.allowed_collisions();
-  allowed.allow(robot.ignored);
-  // What the SRDF enables is tested, whatever the file of spheres ignores.
-  if (scene.srdf) allowed.apply(read_srdf(*scene.srdf));
-  prepared.scene.set_allowed_collisions(std::move(allowed));
   return prepared;
 }
 

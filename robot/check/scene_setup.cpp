@@ -101,8 +101,8 @@ class Preparation {
   Preparation(RobotModel robot, const SceneDescription& scene, const RobotCoverOptions& cover)
       : description_(scene), cover_(cover), scene_(std::move(robot), scene.world_from_root) {}
 
-  PreparedScene run() && {
-    allow_disabled_pairs();
+  PreparedScene run(std::span<const DisabledPair> ignored) && {
+    allow_disabled_pairs(ignored);
     for (const SceneObstacle& obstacle : description_.obstacles) {
       ObstacleShape shape = std::visit(
           [&](const auto& source) { return shape_of(obstacle.name, source); }, obstacle.shape);
@@ -132,7 +132,7 @@ class Preparation {
 
   // The same with stand-ins for what files hold: they are read, but nothing is made of them.
   void rehearse() && {
-    allow_disabled_pairs();
+    allow_disabled_pairs({});
     for (const SceneObstacle& obstacle : description_.obstacles) {
       const auto stand_in = [&](const auto& source) { return stand_in_of(obstacle.name, source); };
       scene_.add(obstacle.name, std::visit(stand_in, obstacle.shape), obstacle.world_from_shape);
@@ -162,10 +162,15 @@ class Preparation {
     }
   }
 
-  void allow_disabled_pairs() {
-    if (!description_.srdf) return;
-    require_regular_file(*description_.srdf);
+  void allow_disabled_pairs(std::span<const DisabledPair> ignored) {
     AllowedCollisions allowed = scene_.allowed_collisions();
+    allowed.allow(ignored);
+    if (description_.srdf) apply_srdf(allowed);
+    scene_.set_allowed_collisions(std::move(allowed));
+  }
+
+  void apply_srdf(AllowedCollisions& allowed) {
+    require_regular_file(*description_.srdf);
     const SemanticDescription semantics = read_srdf(*description_.srdf);
     warnings_.insert(warnings_.end(), semantics.warnings.begin(), semantics.warnings.end());
     allowed.apply(semantics);
@@ -176,7 +181,6 @@ class Preparation {
                             link + "', which the robot does not have: the pair is not enabled");
       }
     }
-    scene_.set_allowed_collisions(std::move(allowed));
   }
 
   // A small file that stands in many places, shared or read with other numbers each time, is held
@@ -295,8 +299,8 @@ std::vector<Sphere> point_spheres(const PointsSource& source) {
 }
 
 PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,
-                            const RobotCoverOptions& cover) {
-  return Preparation(std::move(robot), scene, cover).run();
+                            const RobotCoverOptions& cover, std::span<const DisabledPair> ignored) {
+  return Preparation(std::move(robot), scene, cover).run(ignored);
 }
 
 void check_scene_names(RobotModel robot, const SceneDescription& scene) {

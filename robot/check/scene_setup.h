@@ -24,6 +24,7 @@
 #include "robot/files/scene_file.h"
 #include "robot/model/robot_model.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ std::vector<Sphere> point_spheres(const PointsSource& source);
 struct PreparedScene {
   RobotScene scene;
   // Meshes that are open, and so are surfaces without an inside; attached meshes whose spheres
-  // protrude by more than was requested.
+  // protrude by more than was requested; elements and links of the SRDF that are not known.
   std::vector<std::string> warnings;
 };
 
@@ -46,15 +47,16 @@ struct PreparedScene {
 //
 // Obstacles: a mesh becomes a SolidMesh, grown by what reading and scaling it cost; points become
 // spheres grown by the same. Attached meshes are covered with spheres by cover_robot(), with their
-// own max error or else that of `cover`, and proved to be covered. Of the pairs that the SRDF
-// disables those of other robots' links are passed over.
+// own max error or else that of `cover`, and proved to be covered. The pairs of `ignored`, which a
+// file of spheres may name, are allowed first; then the SRDF decides (AllowedCollisions::apply()).
 //
 // Throws Error naming the file, or what in the scene is of no use: as the readers, link_mesh(),
 // cover_robot(), point_cloud_tree() and RobotScene do, for an attached mesh of which the
 // spheres are not proved to cover all, and where the trees, clouds and meshes that come from a file
 // that was named before have more than 2^22 nodes in all.
 PreparedScene prepare_scene(RobotModel robot, const SceneDescription& scene,
-                            const RobotCoverOptions& cover = {});
+                            const RobotCoverOptions& cover = {},
+                            std::span<const DisabledPair> ignored = {});
 
 // Throws the Error that prepare_scene() would throw for a name that is unknown or taken and for a
 // file that cannot be read or is malformed; of meshes, that no solid comes of them is not found. To
