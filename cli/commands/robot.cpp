@@ -191,18 +191,6 @@ std::vector<std::string> links_to_cover(const RobotDescription& robot, LinkGeome
   return names;
 }
 
-// Throws Error for options of a link that is not covered.
-void require_covered(const RobotDescription& robot, const std::vector<std::string>& links,
-                     const RobotCoverOptions& options) {
-  for (const auto& of_link : options.links) {
-    const std::string& name = of_link.first;
-    robot.model.require_link(name);
-    if (std::find(links.begin(), links.end(), name) == links.end()) {
-      throw Error("link '" + name + "'", "has options and no geometry to cover");
-    }
-  }
-}
-
 // Whether the links are as other commands read them: neither padded nor welded.
 bool has_plain_links(const RobotArguments& arguments) {
   const auto links = link_options(arguments.links);
@@ -348,7 +336,7 @@ int cover_links(RobotArguments& arguments) {
     throw Error("--tool-link", "the robot has no link '" + plan.tool_link + "'");
   }
   const std::vector<std::string> links = links_to_cover(robot, options.geometry);
-  in_file(arguments.urdf, [&] { require_covered(robot, links, options); });
+  in_file(arguments.urdf, [&] { check_cover_options(robot, options); });
   const std::vector<fs::path> outputs =
       in_file(arguments.urdf, [&] { return plan.all(robot, links); });
   check_places(arguments, outputs);

@@ -204,18 +204,6 @@ void add_false_alarm_options(CLI::App& command, FalseAlarmArguments& arguments) 
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::int32_t>::max()}));
 }
 
-namespace {
-
-// Random postures are drawn between them.
-bool has_all_limits(const RobotModel& robot) {
-  return std::ranges::all_of(robot.variable_joints(), [&](int index) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
-    return joint.type == JointType::kContinuous || has_limits(joint);
-  });
-}
-
-}  // namespace
-
 FalseAlarmRun::FalseAlarmRun(const FalseAlarmArguments& arguments, const RobotDescription& robot)
     : robot_(robot), proofs_(proofs_named(arguments.proofs)), postures_(arguments.postures) {
   if (!arguments.goal.empty()) goal_ = share_of(arguments.goal);
@@ -302,7 +290,8 @@ MeasuredCover FalseAlarmRun::cover(const RobotCoverOptions& options, bool has_ma
   if (options.stop.stop_requested()) return result;
   AllowedCollisions allowed(model);
   allowed.allow(disabled);
-  if (has_all_limits(robot_.model)) {
+  // Random postures are drawn between limits.
+  if (joint_without_limits(robot_.model) == nullptr) {
     result.random = measure_false_alarms(model, result.bodies, allowed, result.pairs.get(), sample);
   }
   result.upper_bound = result.random.refused_share().upper_bound(LinkErrorChoice::kConfidence);

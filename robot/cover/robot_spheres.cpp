@@ -83,22 +83,6 @@ SimplifyOptions options_for(const std::string& link, const RobotCoverOptions& op
   return result;
 }
 
-void check_options(const RobotDescription& robot, const RobotCoverOptions& options) {
-  check_lengths(options.max_error, options.min_external_diameter, options.padding, "");
-  for (const auto& entry : options.links) {
-    const std::string& name = entry.first;
-    const auto link = std::find_if(robot.links.begin(), robot.links.end(),
-                                   [&](const LinkDescription& l) { return l.name == name; });
-    if (link == robot.links.end()) {
-      throw Error(internal::subject_of(name),
-                  "the robot has no such link" +
-                      internal::did_you_mean(name, robot.links, &LinkDescription::name));
-    }
-    require(!link_shapes(*link, options.geometry).empty(), internal::subject_of(name),
-            "has options and no geometry to cover");
-  }
-}
-
 // Where the E of every link is far larger than the link, it was meant in another unit.
 void require_errors_below_sizes(const std::vector<Task>& tasks) {
   constexpr double kFar = 10.0;
@@ -283,8 +267,24 @@ LinkCover of_equal_link(LinkCover cover, const std::string& link) {
 
 }  // namespace
 
+void check_cover_options(const RobotDescription& robot, const RobotCoverOptions& options) {
+  check_lengths(options.max_error, options.min_external_diameter, options.padding, "");
+  for (const auto& entry : options.links) {
+    const std::string& name = entry.first;
+    const auto link = std::find_if(robot.links.begin(), robot.links.end(),
+                                   [&](const LinkDescription& l) { return l.name == name; });
+    if (link == robot.links.end()) {
+      throw Error(internal::subject_of(name),
+                  "the robot has no such link" +
+                      internal::did_you_mean(name, robot.links, &LinkDescription::name));
+    }
+    require(!link_shapes(*link, options.geometry).empty(), internal::subject_of(name),
+            "has options and no geometry to cover");
+  }
+}
+
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options) {
-  check_options(robot, options);
+  check_cover_options(robot, options);
   const internal::ThreadLimit limit(options.threads);
   const std::size_t threads = internal::thread_count();
   std::vector<Task> tasks = read_links(robot, options, threads);

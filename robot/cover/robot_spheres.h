@@ -185,6 +185,10 @@ struct RobotCover {
 // millimetres), and as link_mesh(). All files are read before the first link is covered.
 RobotCover cover_robot(const RobotDescription& robot, const RobotCoverOptions& options = {});
 
+// Throws the Error that cover_robot() would throw for options out of range, and for those of a link
+// that does not exist or has no geometry: before long work.
+void check_cover_options(const RobotDescription& robot, const RobotCoverOptions& options);
+
 // Names of the links for which not everything promised is proved, in their order.
 std::vector<std::string> links_not_proved(const RobotCover& cover);
 

@@ -53,7 +53,9 @@ inline bool has_limits(const Joint& joint) {
   return joint.moves() && joint.type != JointType::kContinuous && std::isfinite(joint.upper);
 }
 
-// Throws Error, naming the joint, where one that should have limits has none that are known.
+// The first joint of a variable that should have limits and has none that are known, or null.
+const Joint* joint_without_limits(const RobotModel& robot);
+// Throws Error, naming it, where there is one.
 void require_limits(const RobotModel& robot);
 
 // The first joint whose position in a configuration of the robot's size is beyond its limits, those

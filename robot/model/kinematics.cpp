@@ -160,11 +160,17 @@ std::span<const double> ShortestMotion::end_of(std::span<const double> from,
   return end;
 }
 
-void require_limits(const RobotModel& robot) {
+const Joint* joint_without_limits(const RobotModel& robot) {
   for (const int index : robot.variable_joints()) {
     const Joint& joint = robot.joints()[static_cast<std::size_t>(index)];
-    if (joint.type == JointType::kContinuous || has_limits(joint)) continue;
-    throw Error("joint " + joint.name,
+    if (joint.type != JointType::kContinuous && !has_limits(joint)) return &joint;
+  }
+  return nullptr;
+}
+
+void require_limits(const RobotModel& robot) {
+  if (const Joint* const joint = joint_without_limits(robot)) {
+    throw Error("joint " + joint->name,
                 "it has no limits, which are needed here: correct its <limit> in the URDF");
   }
 }
