@@ -181,13 +181,8 @@ class OtherJoints {
       throw Error(option, srdf.string() + " has no such state" +
                               (known.empty() ? "" : "; it has " + list(known)));
     }
-    for (const JointState& joint : found->joints) {
-      const int index = robot_.find_joint(joint.joint);
-      if (index < 0 || joint.position.size() != 1) continue;
-      const Joint& of_robot = robot_.joints()[static_cast<std::size_t>(index)];
-      if (!of_robot.moves() || of_robot.mimics >= 0) continue;
-      const auto variable = static_cast<std::size_t>(of_robot.variable);
-      configuration_[variable] = joint.position.front();
+    for (const auto& [variable, position] : positions_of(*found, robot_)) {
+      configuration_[variable] = position;
       source_[variable] = Source::kState;
     }
   }

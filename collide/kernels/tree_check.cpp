@@ -301,7 +301,7 @@ TreeCheck::TreeCheck(const PlanSource& source, std::size_t first_test, Instructi
     frames_.push_back(kernel_frame(frame));
     lane_frames_.push_back(lane_frame(frames_.back()));
   }
-  compile_trees(scene, source);
+  compile_trees(scene, source, tests);
   if (is_confirmed) {
     for (KernelBody& body : bodies_) body.margin = std::numeric_limits<float>::infinity();
   }
@@ -317,7 +317,8 @@ TreeCheck::TreeCheck(const PlanSource& source, std::size_t first_test, Instructi
               .pair_count = static_cast<std::int32_t>(pairs_.size())};
 }
 
-void TreeCheck::compile_trees(const Scene& scene, const PlanSource& source) {
+void TreeCheck::compile_trees(const Scene& scene, const PlanSource& source,
+                              std::span<const PlanSource::Test> tests) {
   const std::vector<Chain> chains = chains_of(source.frames);
   std::vector<SphereTree> body_trees;
   std::vector<SphereTree> obstacle_trees;
@@ -337,19 +338,11 @@ void TreeCheck::compile_trees(const Scene& scene, const PlanSource& source) {
   const auto reach = [](const SearchTrees& trees, const Pose& pose) {
     return trees.narrow.reach() + pose.translation().norm();
   };
-  for (const auto& origins : body_origins_) {
-    for (const Origin& origin : origins) {
-      const PlanSource::Body& body = source.bodies[static_cast<std::size_t>(origin.part)];
-      if (origin.sphere == 0) bound = std::max(bound, reach(*body.trees, body.frame_from_trees));
-    }
-  }
-  for (const auto& origins : obstacle_origins_) {
-    for (const Origin& origin : origins) {
-      const PlanSource::Obstacle& obstacle =
-          source.obstacles[static_cast<std::size_t>(origin.part)];
-      if (origin.sphere != 0) continue;
-      bound = std::max(bound, reach(trees_of(obstacle), obstacle.root_from_shape));
-    }
+  for (const PlanSource::Test& test : tests) {
+    const PlanSource::Body& body = source.bodies[static_cast<std::size_t>(test.body)];
+    const PlanSource::Obstacle& obstacle = source.obstacles[static_cast<std::size_t>(test.other)];
+    bound = std::max({bound, reach(*body.trees, body.frame_from_trees),
+                      reach(trees_of(obstacle), obstacle.root_from_shape)});
   }
   if (!(bound <= kMaxCoordinate)) throw Error("robot", "it or an obstacle reaches too far");
   trees_.reserve(body_trees.size() + obstacle_trees.size());

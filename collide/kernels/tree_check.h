@@ -148,7 +148,8 @@ class TreeCheck {
   struct Scene;
   struct Translator;
 
-  void compile_trees(const Scene& scene, const PlanSource& source);
+  void compile_trees(const Scene& scene, const PlanSource& source,
+                     std::span<const PlanSource::Test> tests);
 
   // Of the source: the frame of each body and where it is in it; the test of each body and
   // obstacle.

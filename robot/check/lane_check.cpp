@@ -22,12 +22,15 @@ LaneCheck::LaneCheck(const BodyPairs& pairs, const RobotPlanSource& source,
   const PlanSource& all = source.source;
   motion_plan_float_ = std::make_shared<const CompiledPlan<float>>(all);
   motion_plan_double_ = std::make_unique<const CompiledPlan<double>>(all);
-  PlanSource of_configurations = all;
-  of_configurations.tests.resize(source.first_static_tree);
-  const bool is_all = source.first_static_tree == all.tests.size();
-  config_plan_ =
-      is_all ? motion_plan_float_ : std::make_shared<const CompiledPlan<float>>(of_configurations);
-  wide_config_plan_ = std::make_unique<const CompiledWidePlan>(of_configurations, *config_plan_);
+  if (source.first_static_tree == all.tests.size()) {
+    config_plan_ = motion_plan_float_;
+    wide_config_plan_ = std::make_unique<const CompiledWidePlan>(all, *config_plan_);
+  } else {
+    PlanSource first = all;
+    first.tests.resize(source.first_static_tree);
+    config_plan_ = std::make_shared<const CompiledPlan<float>>(first);
+    wide_config_plan_ = std::make_unique<const CompiledWidePlan>(first, *config_plan_);
+  }
   decide_fixed_pairs(source.fixed_pairs);
   find_never_ranges();
 }

@@ -140,18 +140,24 @@ NamedPosture rest_posture(const RobotModel& robot) {
   });
 }
 
+std::vector<VariablePosition> positions_of(const GroupState& state, const RobotModel& robot) {
+  std::vector<VariablePosition> result;
+  for (const JointState& joint : state.joints) {
+    const auto& variables = robot.variable_joints();
+    const auto found = std::find(variables.begin(), variables.end(), robot.find_joint(joint.joint));
+    if (found == variables.end() || joint.position.size() != 1) continue;
+    result.push_back({static_cast<std::size_t>(found - variables.begin()), joint.position.front()});
+  }
+  return result;
+}
+
 std::vector<NamedPosture> group_postures(const RobotModel& robot,
                                          const SemanticDescription& semantics) {
   std::vector<NamedPosture> result;
   for (const GroupState& state : semantics.group_states) {
     NamedPosture posture{state.group + "/" + state.name, zero_posture(robot).configuration};
-    for (const JointState& joint : state.joints) {
-      const int index = robot.find_joint(joint.joint);
-      const auto& variables = robot.variable_joints();
-      const auto found = std::find(variables.begin(), variables.end(), index);
-      if (index < 0 || found == variables.end() || joint.position.size() != 1) continue;
-      posture.configuration[static_cast<std::size_t>(found - variables.begin())] =
-          joint.position.front();
+    for (const auto& [variable, position] : positions_of(state, robot)) {
+      posture.configuration[variable] = position;
     }
     result.push_back(std::move(posture));
   }

@@ -84,9 +84,17 @@ NamedPosture zero_posture(const RobotModel& robot);
 // one, in the middle between them.
 NamedPosture rest_posture(const RobotModel& robot);
 
-// The states of a semantic description's groups, "GROUP/STATE", the other joints as in
-// zero_posture(). What is about joints that the robot has not got, that do not move or follow
-// others, or about several numbers for one joint, is passed over.
+// What a state says of a variable.
+struct VariablePosition {
+  std::size_t variable = 0;
+  double position = 0.0;
+};
+// What is about joints that the robot has not got, that do not move or follow others, or about
+// several numbers for one joint, is passed over.
+std::vector<VariablePosition> positions_of(const GroupState& state, const RobotModel& robot);
+
+// The states of a semantic description's groups by positions_of(), "GROUP/STATE", the other joints
+// as in zero_posture().
 std::vector<NamedPosture> group_postures(const RobotModel& robot,
                                          const SemanticDescription& semantics);
 
